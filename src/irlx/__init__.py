@@ -1,0 +1,73 @@
+"""irlx: robot programs in an IRL profile with redundancy clauses, turned into verified joint streams.
+
+>>> import irlx
+>>> run = irlx.run("square.irl")                        # doctest: +SKIP
+>>> run.q.shape, run.summary.duration                   # doctest: +SKIP
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from irlx._version import __version__
+
+if TYPE_CHECKING:
+    from irlx.cell.errors import CellError
+    from irlx.checking import check
+    from irlx.diagnostics import Diagnostic, IrlxError
+    from irlx.pipeline import run, stream
+    from irlx.program import Program, ProgramError, load
+    from irlx.report.run import Run, RunError, RunInterrupted
+    from irlx.streams.error import StreamError
+    from irlx.streams.sample import Sample
+    from irlx.verification import verify
+
+_HOMES = {
+    "CellError": "irlx.cell.errors",
+    "Diagnostic": "irlx.diagnostics",
+    "IrlxError": "irlx.diagnostics",
+    "Program": "irlx.program",
+    "ProgramError": "irlx.program",
+    "Run": "irlx.report.run",
+    "RunError": "irlx.report.run",
+    "RunInterrupted": "irlx.report.run",
+    "Sample": "irlx.streams.sample",
+    "StreamError": "irlx.streams.error",
+    "check": "irlx.checking",
+    "load": "irlx.program",
+    "run": "irlx.pipeline",
+    "stream": "irlx.pipeline",
+    "verify": "irlx.verification",
+}
+"""Module of each public name; imported on first use, so that looking at a program stays light."""
+
+__all__ = [
+    "CellError",
+    "Diagnostic",
+    "IrlxError",
+    "Program",
+    "ProgramError",
+    "Run",
+    "RunError",
+    "RunInterrupted",
+    "Sample",
+    "StreamError",
+    "__version__",
+    "check",
+    "load",
+    "run",
+    "stream",
+    "verify",
+]
+
+
+def __getattr__(name: str) -> Any:
+    home = _HOMES.get(name)
+    if home is None:
+        raise AttributeError(f"module 'irlx' has no attribute '{name}'")
+    return getattr(import_module(home), name)
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -1,0 +1,37 @@
+"""Function blocks: the narrow interface between a program and the machine that runs it.
+
+An interpreter speaks to the rest of irlx only by yielding these blocks and questions, and by
+receiving the answers. All of them are frozen, serialisable, in SI units (m, rad, s), with joints
+numbered from 1 in the robot's order.
+"""
+
+from irlx.blocks.block import Block, HaltBlock, Origin
+from irlx.blocks.move import JointTarget, MotionLaw, MoveBlock, MoveKind, PoseTarget
+from irlx.blocks.options import (
+    CyclicBlock,
+    FreezeBlock,
+    JointRange,
+    LimitClause,
+    LimitKind,
+    LimitSwitchBlock,
+)
+from irlx.blocks.questions import AskPosture, Question
+
+__all__ = [
+    "AskPosture",
+    "Block",
+    "CyclicBlock",
+    "FreezeBlock",
+    "HaltBlock",
+    "JointRange",
+    "JointTarget",
+    "LimitClause",
+    "LimitKind",
+    "LimitSwitchBlock",
+    "MotionLaw",
+    "MoveBlock",
+    "MoveKind",
+    "Origin",
+    "PoseTarget",
+    "Question",
+]

@@ -1,0 +1,33 @@
+"""What every function block carries, and the block that ends a program early."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Where in a program a block comes from: file name, offsets ``[start, end)``, line from 1."""
+
+    file: str
+    start: int
+    end: int
+    line: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class Block:
+    """One thing the program asks the machine to do.
+
+    `id` counts the blocks of a run from 1; `robot` and `process` name who it is for.
+    """
+
+    id: int
+    origin: Origin
+    robot: str = "default"
+    process: str = "main"
+
+
+@dataclass(frozen=True, kw_only=True)
+class HaltBlock(Block):
+    """The program ends here although statements follow."""

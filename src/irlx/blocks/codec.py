@@ -1,0 +1,183 @@
+"""Function blocks <-> plain data (dictionaries, lists, strings, numbers), without loss.
+
+The form of a block follows from its dataclass: one key a field, enumerations by value, tuples as
+lists. ``type`` names the class of a block, and of a part where several classes may stand.
+"""
+
+from __future__ import annotations
+
+import types
+from dataclasses import fields, is_dataclass
+from enum import Enum
+from functools import cache
+from math import isfinite
+from typing import Any, Union, get_args, get_origin, get_type_hints
+
+from irlx.blocks.block import Block, HaltBlock
+from irlx.blocks.move import MoveBlock
+from irlx.blocks.options import CyclicBlock, FreezeBlock, LimitSwitchBlock
+
+BLOCK_TYPES: dict[str, type[Block]] = {
+    kind.__name__: kind for kind in (MoveBlock, HaltBlock, LimitSwitchBlock, FreezeBlock, CyclicBlock)
+}
+"""Every block there is, by the name that its plain form carries."""
+
+_NOT_FINITE = {"inf", "-inf", "nan"}
+
+
+class BlockFormError(ValueError):
+    """Plain data that is no block; the message names the key."""
+
+
+def block_to_plain(block: Block) -> dict[str, Any]:
+    """Plain form of a block that JSON can hold: infinite numbers become 'inf' and '-inf'."""
+    plain: dict[str, Any] = _without_infinities(block_to_fields(block))
+    return plain
+
+
+def block_to_fields(block: Block) -> dict[str, Any]:
+    """Plain form of a block with every float as it is."""
+    return {"type": type(block).__name__, **_fields_of(block)}
+
+
+def block_from_plain(plain: object) -> Block:
+    """Block of a plain form, with or without infinite numbers as strings.
+
+    Raises BlockFormError for anything that `block_to_plain` does not produce.
+    """
+    if not isinstance(plain, dict):
+        raise BlockFormError(f"a block is a dictionary, found {plain!r}")
+    rest = dict(plain)
+    name = rest.pop("type", None)
+    if not isinstance(name, str) or name not in BLOCK_TYPES:
+        raise BlockFormError(f"type: no block is called {name!r}; known: {', '.join(BLOCK_TYPES)}")
+    block = _dataclass_from(BLOCK_TYPES[name], rest, "")
+    assert isinstance(block, Block)
+    return block
+
+
+def _fields_of(value: Any) -> dict[str, Any]:
+    kind: Any = type(value)
+    hints = _hints(kind)
+    return {
+        field.name: _encode(getattr(value, field.name), _is_choice(hints[field.name]))
+        for field in fields(value)
+    }
+
+
+def _encode(value: Any, tagged: bool) -> Any:
+    if is_dataclass(value):
+        tag = {"type": type(value).__name__} if tagged else {}
+        return {**tag, **_fields_of(value)}
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, tuple):
+        return [_encode(item, False) for item in value]
+    # Values that came out of arrays print and serialise like any other number.
+    if isinstance(value, float):
+        return float(value)
+    return value if value is None or isinstance(value, bool | str) else int(value)
+
+
+def _without_infinities(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _without_infinities(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_without_infinities(item) for item in value]
+    return repr(value) if isinstance(value, float) and not isfinite(value) else value
+
+
+@cache
+def _hints(kind: Any) -> dict[str, Any]:
+    return get_type_hints(kind)
+
+
+def _alternatives(hint: Any) -> tuple[Any, ...]:
+    return get_args(hint) if get_origin(hint) in {Union, types.UnionType} else (hint,)
+
+
+def _is_choice(hint: Any) -> bool:
+    """Whether more than one dataclass may stand here, so that the plain form must name it."""
+    return sum(is_dataclass(option) for option in _alternatives(hint)) > 1
+
+
+def _dataclass_from(kind: Any, plain: object, where: str) -> Any:
+    if not isinstance(plain, dict):
+        raise BlockFormError(f"{where or 'block'}: needs a {kind.__name__}, found {plain!r}")
+    hints = _hints(kind)
+    names = [field.name for field in fields(kind)]
+    for key in plain:
+        if key not in names:
+            raise BlockFormError(f"{_join(where, str(key))}: a {kind.__name__} has no such field")
+    values = {}
+    for name in names:
+        if name not in plain:
+            raise BlockFormError(f"{_join(where, name)}: missing")
+        values[name] = _decode(hints[name], plain[name], _join(where, name))
+    return kind(**values)
+
+
+def _join(where: str, name: str) -> str:
+    return f"{where}.{name}" if where else name
+
+
+def _decode(hint: Any, value: object, where: str) -> Any:
+    options = _alternatives(hint)
+    if value is None and type(None) in options:
+        return None
+    options = tuple(option for option in options if option is not type(None))
+    if len(options) > 1:
+        return _decode_choice(options, value, where)
+    option = options[0]
+    if get_origin(option) is tuple:
+        return _decode_tuple(get_args(option), value, where)
+    if is_dataclass(option):
+        return _dataclass_from(option, value, where)
+    if issubclass(option, Enum):
+        try:
+            return option(value)
+        except ValueError:
+            known = ", ".join(str(member.value) for member in option)
+            raise BlockFormError(f"{where}: {value!r} is none of {known}") from None
+    return _decode_scalar(option, value, where)
+
+
+def _decode_choice(options: tuple[type, ...], value: object, where: str) -> Any:
+    rest = dict(value) if isinstance(value, dict) else {}
+    name = rest.pop("type", None)
+    for option in options:
+        if option.__name__ == name:
+            return _dataclass_from(option, rest, where)
+    known = ", ".join(option.__name__ for option in options)
+    raise BlockFormError(f"{_join(where, 'type')}: {name!r} is none of {known}")
+
+
+def _decode_tuple(items: tuple[Any, ...], value: object, where: str) -> tuple[Any, ...]:
+    if not isinstance(value, list | tuple):
+        raise BlockFormError(f"{where}: needs a list, found {value!r}")
+    if len(items) == 2 and items[1] is Ellipsis:
+        items = (items[0],) * len(value)
+    if len(items) != len(value):
+        raise BlockFormError(f"{where}: needs {len(items)} values, found {len(value)}")
+    return tuple(
+        _decode(item, part, f"{where}.{number}")
+        for number, (item, part) in enumerate(zip(items, value, strict=True), 1)
+    )
+
+
+def _decode_scalar(kind: type, value: object, where: str) -> object:
+    if kind is float:
+        if type(value) in {int, float}:
+            return _to_float(value, where)
+        if isinstance(value, str) and value in _NOT_FINITE:
+            return float(value)
+    elif type(value) is kind:
+        return value
+    raise BlockFormError(f"{where}: needs a {kind.__name__}, found {value!r}")
+
+
+def _to_float(value: Any, where: str) -> float:
+    try:
+        return float(value)
+    except OverflowError:
+        raise BlockFormError(f"{where}: {value} is too large for a float") from None

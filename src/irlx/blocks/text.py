@@ -1,0 +1,122 @@
+"""Function blocks as text: one line a block, in the units that people write (mm, degrees, seconds)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from functools import singledispatch
+from math import degrees
+
+from irlx.blocks.block import Block, HaltBlock
+from irlx.blocks.move import JointTarget, MotionLaw, MoveBlock, MoveKind, PoseTarget
+from irlx.blocks.options import CyclicBlock, FreezeBlock, JointRange, LimitKind, LimitSwitchBlock
+
+NEGLIGIBLE = 1e-12
+"""Numbers smaller than this print as 0: they are what sin(180 degrees) leaves behind."""
+
+_SWITCH = {
+    LimitKind.POSITION: "JOINTLIMIT",
+    LimitKind.SPEED: "JOINTSPEEDLIMIT",
+    LimitKind.ACCELERATION: "JOINTACCELLIMIT",
+}
+
+
+def block_text(block: Block, joint_units: Sequence[str]) -> str:
+    """Canonical line of a block, without a line end; equal blocks have equal lines.
+
+    `joint_units` says of each joint of the robot whether its values are 'rad' (printed in degrees)
+    or 'm' (printed in mm). Numbers carry ten significant digits. For example
+    ``3 MOVE LIN to (9500 1000 3500) (0 0 0 1) in R_BASE speed 1000 mm/s acc 2000 mm/s2 ... line 20``.
+    Raises TypeError for a block that has no text form.
+    """
+    words = [str(block.id), _words(block, joint_units)]
+    if block.robot != "default":
+        words.append(f"robot {block.robot}")
+    if block.process != "main":
+        words.append(f"process {block.process}")
+    words.append(f"line {block.origin.line}")
+    return " ".join(words)
+
+
+@singledispatch
+def _words(block: Block, joint_units: Sequence[str]) -> str:
+    raise TypeError(f"no text form for {type(block).__name__}")
+
+
+@_words.register
+def _(block: HaltBlock, joint_units: Sequence[str]) -> str:
+    return "HALT"
+
+
+@_words.register
+def _(block: MoveBlock, joint_units: Sequence[str]) -> str:
+    words = [f"MOVE {block.kind.value} to {_target(block.target, joint_units)}", _law(block.kind, block.law)]
+    words += [f"WITH {_SWITCH[clause.kind]} {_range(clause.range, joint_units)}" for clause in block.limits]
+    return " ".join(words)
+
+
+@_words.register
+def _(block: LimitSwitchBlock, joint_units: Sequence[str]) -> str:
+    name = _SWITCH[block.kind]
+    return f"{name}END" if block.range is None else f"{name} {_range(block.range, joint_units)}"
+
+
+@_words.register
+def _(block: FreezeBlock, joint_units: Sequence[str]) -> str:
+    if not block.joints:
+        return "FREEZEEND"
+    return f"FREEZESTART {', '.join(map(str, block.joints))}"
+
+
+@_words.register
+def _(block: CyclicBlock, joint_units: Sequence[str]) -> str:
+    return "CYCLICSTART" if block.active else "CYCLICEND"
+
+
+def _target(target: PoseTarget | JointTarget, joint_units: Sequence[str]) -> str:
+    if isinstance(target, JointTarget):
+        return f"joints {_joint_values(target.values, joint_units)}"
+    position = _group(map(_mm, target.position))
+    orientation = "kept" if target.orientation is None else _group(map(number, target.orientation))
+    return f"{position} {orientation} in {target.frame}"
+
+
+def _law(kind: MoveKind, law: MotionLaw) -> str:
+    """The bounds that rule this kind of move; the others are carried but change nothing."""
+    if kind is MoveKind.PTP:
+        parts = [f"speed_ptp {number(law.speed_ptp * 100)} %", f"acc_ptp {number(law.acc_ptp * 100)} %"]
+    else:
+        parts = [
+            f"speed {_mm(law.speed)} mm/s acc {_mm(law.acc)} mm/s2",
+            f"speed_ori {_deg(law.speed_ori)} deg/s acc_ori {_deg(law.acc_ori)} deg/s2",
+        ]
+    if law.duration is not None:
+        parts.append(f"time {number(law.duration)} s")
+    return " ".join(parts)
+
+
+def _range(bounds: JointRange, joint_units: Sequence[str]) -> str:
+    lower = _joint_values(bounds.lower, joint_units)
+    return f"{lower} {_joint_values(bounds.upper, joint_units)}"
+
+
+def _joint_values(values: Sequence[float], joint_units: Sequence[str]) -> str:
+    """Values in parentheses, degrees or mm by joint."""
+    shown: dict[str, Callable[[float], str]] = {"rad": _deg, "m": _mm}
+    return _group(shown[unit](value) for value, unit in zip(values, joint_units, strict=True))
+
+
+def _group(words: Iterable[str]) -> str:
+    return f"({' '.join(words)})"
+
+
+def _mm(metres: float) -> str:
+    return number(metres * 1000.0)
+
+
+def _deg(radians: float) -> str:
+    return number(degrees(radians))
+
+
+def number(value: float) -> str:
+    """Number with ten significant digits; what is smaller than `NEGLIGIBLE` is 0, never -0."""
+    return "0" if abs(value) < NEGLIGIBLE else f"{value:.10g}"

@@ -1,0 +1,179 @@
+"""From a validated cell file to a `Cell`: counts, ranges and units checked against the robot."""
+
+from __future__ import annotations
+
+from math import cos, inf, radians, sin
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irlx.cell.cell import Cell, MotionDefaults, NamedFrame
+from irlx.cell.errors import CellError
+from irlx.cell.schema import CellFile, FrameSection, LimitsSection, RobotSection
+from irlx.diagnostics import Diagnostic, Place, report
+from irlx.robot.description import RobotDescription
+from irlx.robot.limits import JointLimits
+
+Array = NDArray[np.float64]
+_KINDS = ("position", "speed", "acceleration")
+
+
+def build_cell(content: CellFile, robot_section: RobotSection, robot: RobotDescription, file: str) -> Cell:
+    """Cell of a robot. Raises CellError with every fault found: IRL604 to IRL606, IRL620.
+
+    Lists of wrong length stop the checks that need them, no others.
+    """
+    errors: list[Diagnostic] = []
+    count = len(robot.axes)
+    limits = _limits(robot_section.limits, robot, file, errors)
+    start = _joint_list(robot_section.start, "robot.start", [0.0] * count, count, file, errors)
+    weights = _joint_list(
+        robot_section.weights, "robot.weights", [float(count - i) for i in range(count)], count, file, errors
+    )
+    _status_joints(robot_section, robot, file, errors)
+    q = np.array([to_si(robot, joint, value) for joint, value in enumerate(start[:count])])
+    if not errors:
+        errors += _start_errors(q, limits, robot, file)
+    if errors:
+        raise CellError(errors)
+    motion = content.motion
+    return Cell(
+        file,
+        robot_section.model or "",
+        robot,
+        limits,
+        np.array(weights),
+        q,
+        round(motion.tick_ms * 1e6),
+        MotionDefaults(
+            motion.speed, motion.acc, motion.speed_ori, motion.acc_ori, motion.speed_ptp, motion.acc_ptp
+        ),
+        {name: _frame(section) for name, section in content.frames.items()},
+        _warnings(content, limits, file),
+    )
+
+
+def to_si(robot: RobotDescription, joint: int, value: float) -> float:
+    """Joint value of a cell or program, deg | mm, in rad | m; also for its rates."""
+    return value * 1e-3 if robot.axes[joint].is_prismatic else radians(value)
+
+
+def from_si(robot: RobotDescription, joint: int, value: float) -> float:
+    """Joint value rad | m in deg | mm."""
+    return value * 1e3 if robot.axes[joint].is_prismatic else float(np.degrees(value))
+
+
+def _joint_list(
+    given: list[float] | None,
+    key: str,
+    default: list[float],
+    count: int,
+    file: str,
+    errors: list[Diagnostic],
+) -> list[float]:
+    if given is None:
+        return default
+    if len(given) != count:
+        errors.append(report("IRL604", Place(file, key=key), key=key, joints=count, found=len(given)))
+        return default
+    return given
+
+
+def _status_joints(
+    section: RobotSection, robot: RobotDescription, file: str, errors: list[Diagnostic]
+) -> None:
+    for index, name in enumerate(section.status_joints):
+        if name not in robot.joint_names:
+            key = f"robot.status_joints[{index + 1}]"
+            data: dict[str, Any] = {"key": key, "name": name, "known": ", ".join(robot.joint_names)}
+            errors.append(report("IRL606", Place(file, key=key), **data))
+
+
+def _limits(
+    section: LimitsSection, robot: RobotDescription, file: str, errors: list[Diagnostic]
+) -> JointLimits:
+    axes = robot.axes
+    limits = JointLimits.unlimited(len(axes))
+    speed = np.array([joint.speed for joint in axes])
+    limits = limits.with_pair(
+        "position", np.array([joint.lower for joint in axes]), np.array([joint.upper for joint in axes])
+    ).with_pair("speed", -speed, speed)
+    for kind in _KINDS:
+        given = getattr(section, kind)
+        if given is None:
+            continue
+        pairs = _pairs(given, kind, robot, file, errors)
+        limits = limits.with_pair(kind, *(np.array(side) for side in zip(*pairs, strict=True)))
+    return limits
+
+
+def _pairs(
+    given: object, kind: str, robot: RobotDescription, file: str, errors: list[Diagnostic]
+) -> list[tuple[float, float]]:
+    """Lower and upper bound (SI) of every joint."""
+    key, count = f"robot.limits.{kind}", len(robot.axes)
+    free = [(-inf, inf)] * count
+    if not isinstance(given, list):
+        return free
+    if len(given) != count:
+        errors.append(report("IRL604", Place(file, key=key), key=key, joints=count, found=len(given)))
+        return free
+    pairs = []
+    for joint, entry in enumerate(given):
+        lower, upper = _pair(entry)
+        place = Place(file, key=f"{key}[{joint + 1}]")
+        data: dict[str, Any] = {"joint": robot.axes[joint].name, "kind": kind, "found": entry}
+        if lower > upper:
+            errors.append(report("IRL605", place, cause="the lower bound is above the upper one", **data))
+        elif kind != "position" and not lower <= 0.0 <= upper:
+            errors.append(report("IRL605", place, cause="the range does not contain standstill (0)", **data))
+        pairs.append((to_si(robot, joint, lower), to_si(robot, joint, upper)))
+    return pairs
+
+
+def _pair(entry: object) -> tuple[float, float]:
+    if isinstance(entry, list):
+        return float(entry[0]), float(entry[1])
+    if entry is False or not isinstance(entry, int | float):
+        return -inf, inf
+    return -float(entry), float(entry)
+
+
+def _start_errors(q: Array, limits: JointLimits, robot: RobotDescription, file: str) -> list[Diagnostic]:
+    errors = []
+    for joint in np.flatnonzero((q < limits.position_lower) | (q > limits.position_upper)):
+        key = f"robot.start[{joint + 1}]"
+        values = (q[joint], limits.position_lower[joint], limits.position_upper[joint])
+        found, lower, upper = (f"{from_si(robot, int(joint), value):.6g}" for value in values)
+        unit = "mm" if robot.axes[joint].is_prismatic else "deg"
+        data: dict[str, Any] = {"joint": robot.axes[joint].name, "found": found, "unit": unit}
+        data |= {"lower": lower, "upper": upper}
+        errors.append(report("IRL620", Place(file, key=key), **data))
+    return errors
+
+
+def _frame(section: FrameSection) -> NamedFrame:
+    """Pose of a frame: turns about the fixed x, y, z axes, in this order (q = qz qy qx)."""
+    (cx, sx), (cy, sy), (cz, sz) = ((cos(radians(a) / 2), sin(radians(a) / 2)) for a in section.rpy)
+    x, y, z = section.xyz
+    return NamedFrame(
+        (x, y, z),
+        (
+            cx * cy * cz + sx * sy * sz,
+            sx * cy * cz - cx * sy * sz,
+            cx * sy * cz + sx * cy * sz,
+            cx * cy * sz - sx * sy * cz,
+        ),
+    )
+
+
+def _warnings(content: CellFile, limits: JointLimits, file: str) -> tuple[Diagnostic, ...]:
+    found = []
+    if content.obstacle:
+        found.append(report("IRL607", Place(file, key="obstacle"), section="obstacle"))
+    if content.signals:
+        found.append(report("IRL607", Place(file, key="signals"), section="signals"))
+    if not np.any(np.isfinite(limits.acceleration_upper)):
+        found.append(report("IRL621", Place(file, key="robot.limits.acceleration")))
+    return tuple(found)

@@ -1,0 +1,54 @@
+"""A cell, ready for use: SI units, arrays, everything checked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irlx.diagnostics import Diagnostic
+from irlx.robot.description import RobotDescription
+from irlx.robot.limits import JointLimits
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class MotionDefaults:
+    """Values the R_ variables start with, in program units: mm/s, mm/s2, deg/s, deg/s2, %."""
+
+    speed: float
+    acc: float
+    speed_ori: float
+    acc_ori: float
+    speed_ptp: float
+    acc_ptp: float
+
+
+@dataclass(frozen=True)
+class NamedFrame:
+    """A pose of the cell: position in mm, unit quaternion scalar first."""
+
+    position: tuple[float, float, float]
+    quaternion: tuple[float, float, float, float]
+
+
+@dataclass(frozen=True)
+class Cell:
+    """Robot, limits (SI), least-motion weights (n,), start posture (n,) rad | m, tick and frames.
+
+    `file` names the cell file for messages, `model` is the robot as the cell gives it.
+    """
+
+    file: str
+    model: str
+    robot: RobotDescription
+    limits: JointLimits
+    weights: Array
+    start: Array
+    tick_ns: int
+    motion: MotionDefaults
+    frames: Mapping[str, NamedFrame]
+    warnings: tuple[Diagnostic, ...] = ()

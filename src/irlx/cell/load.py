@@ -1,0 +1,41 @@
+"""Finding and loading a cell file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from irlx.cell.build import build_cell
+from irlx.cell.cell import Cell
+from irlx.cell.errors import CellError
+from irlx.cell.model import load_robot, with_packaged_defaults
+from irlx.cell.read import read_cell_file
+from irlx.diagnostics import Place, report
+
+
+def find_cell(candidates: list[Path], specification: Place | None) -> Path:
+    """First of the candidates that exists. Raises CellError, IRL609, that lists what was tried."""
+    for path in candidates:
+        if path.is_file():
+            return path
+    tried = ", ".join(str(path) for path in candidates)
+    raise CellError(report("IRL609", specification, tried=tried))
+
+
+def load_cell(path: Path) -> Cell:
+    """Cell of a file. Raises CellError with every fault; IRL001, IRL002, IRL007 where it cannot be read."""
+    content = read_cell_file(read_bytes(path), str(path))
+    section = with_packaged_defaults(content.robot)
+    robot = load_robot(section, str(path), path.parent)
+    return build_cell(content, section, robot, str(path))
+
+
+def read_bytes(path: Path) -> bytes:
+    """Bytes of a cell file. Raises CellError: IRL001 missing, IRL002 unreadable, IRL007 a folder."""
+    try:
+        return path.read_bytes()
+    except FileNotFoundError as cause:
+        raise CellError(report("IRL001", path=path, near="")) from cause
+    except IsADirectoryError as cause:
+        raise CellError(report("IRL007", path=path)) from cause
+    except OSError as cause:
+        raise CellError(report("IRL002", Place(str(path)), path=path, cause=cause.strerror)) from cause

@@ -1,0 +1,22 @@
+"""Robots that come with irlx: primitive-only URDFs, each with a cell of its own."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+
+_FOLDER = files("irlx.cell") / "robots"
+
+
+def packaged_names() -> tuple[str, ...]:
+    """Names of the packaged robots."""
+    return tuple(sorted(entry.name[:-5] for entry in _FOLDER.iterdir() if entry.name.endswith(".urdf")))
+
+
+def packaged_urdf(name: str) -> str:
+    """URDF text of a packaged robot."""
+    return (_FOLDER / f"{name}.urdf").read_text(encoding="utf-8")
+
+
+def packaged_cell(name: str) -> bytes:
+    """Cell file of a packaged robot: tip, start, weights, its own limits."""
+    return (_FOLDER / f"{name}.toml").read_bytes()

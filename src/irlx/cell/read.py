@@ -1,0 +1,115 @@
+"""TOML text -> validated `CellFile`, every fault with its key path, found value and expectation."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+from irlx.cell.errors import CellError
+from irlx.cell.schema import (
+    CellFile,
+    FrameSection,
+    LimitsSection,
+    MotionSection,
+    RobotSection,
+)
+from irlx.diagnostics import Diagnostic, Place, report
+from irlx.diagnostics.diagnostic import near_matches
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+_SECTIONS: dict[tuple[str, ...], type[BaseModel]] = {
+    (): CellFile,
+    ("robot",): RobotSection,
+    ("robot", "limits"): LimitsSection,
+    ("motion",): MotionSection,
+    ("frames", "*"): FrameSection,
+}
+
+
+def read_cell_file(content: bytes, file: str) -> CellFile:
+    """Validated content of a cell file named `file`.
+
+    Raises CellError with one diagnostic a fault: IRL601 not TOML, IRL602 unknown key, IRL603 value.
+    """
+    try:
+        table = tomllib.loads(content.decode("utf-8"))
+    except UnicodeDecodeError as cause:
+        message = f"byte {cause.start} is no UTF-8"
+        raise CellError(report("IRL601", Place(file), cause=message)) from cause
+    except tomllib.TOMLDecodeError as cause:
+        raise CellError(report("IRL601", Place(file), cause=str(cause))) from cause
+    try:
+        return CellFile.model_validate(table)
+    except ValidationError as cause:
+        raise CellError(_diagnostics(cause, table, file)) from cause
+
+
+def _diagnostics(cause: ValidationError, table: Mapping[str, Any], file: str) -> list[Diagnostic]:
+    """One diagnostic for each key that is wrong, in the order of the file's schema."""
+    found: dict[str, Diagnostic] = {}
+    for fault in cause.errors(include_url=False):
+        location = _in_file(fault["loc"], table)
+        key = key_path(location)
+        place = Place(file, key=key)
+        if fault["type"] == "extra_forbidden":
+            known = _known_keys(location[:-1])
+            near = near_matches(str(location[-1]), known)
+            found[key] = report("IRL602", place, key=key, near=near, known=", ".join(known))
+        else:
+            expected = _expectation(fault, location)
+            value = repr(_value_at(table, location))
+            found[key] = report("IRL603", place, key=key, expected=expected, found=value)
+    return list(found.values())
+
+
+def _in_file(location: tuple[int | str, ...], table: object) -> tuple[int | str, ...]:
+    """The part of pydantic's location that exists in the file; it adds names of alternatives."""
+    real: list[int | str] = []
+    for step in location:
+        inside = isinstance(table, Mapping) and step in table
+        inside = inside or (isinstance(table, list) and isinstance(step, int) and step < len(table))
+        if not inside:
+            break
+        real.append(step)
+        table = table[step]  # type: ignore[index]
+    return tuple(real)
+
+
+def _value_at(table: Any, location: tuple[int | str, ...]) -> Any:
+    for step in location:
+        table = table[step]
+    return table
+
+
+def _known_keys(section: tuple[int | str, ...]) -> list[str]:
+    names = tuple(str(step) for step in section)
+    model = _SECTIONS.get(names) or _SECTIONS.get((*names[:-1], "*"))
+    return list(model.model_fields) if model else []
+
+
+_LIMIT_WORDS = "a number, a pair [lower, upper], or false, for each joint"
+
+
+def _expectation(fault: Any, location: tuple[int | str, ...]) -> str:
+    if "limits" in location:
+        return _LIMIT_WORDS
+    message = str(fault["msg"])
+    for prefix in ("Input should be a valid ", "Input should be "):
+        if message.startswith(prefix):
+            return message[len(prefix) :]
+    return message[:1].lower() + message[1:]
+
+
+def key_path(location: tuple[int | str, ...]) -> str:
+    """Key path as people write it: ``robot.start[3]``, entries counted from 1."""
+    path = ""
+    for step in location:
+        path += f"[{step + 1}]" if isinstance(step, int) else f".{step}" if path else step
+    return path

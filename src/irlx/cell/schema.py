@@ -1,0 +1,72 @@
+"""What a cell file may hold; validated as a whole by pydantic."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Number = Annotated[float, Field(strict=False, allow_inf_nan=False)]
+Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+Percent = Annotated[float, Field(gt=0.0, le=100.0)]
+Pair = Annotated[list[Number], Field(min_length=2, max_length=2)]
+Limit = Number | Pair | Literal[False]
+Vector = Annotated[list[Number], Field(min_length=3, max_length=3)]
+
+
+class Section(BaseModel):
+    """Base of all tables: unknown keys are errors."""
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+
+
+class LimitsSection(Section):
+    """Limits that replace those of the model: one entry a joint, or one entry for all joints.
+
+    A number is +- that number, a pair is [lower, upper], false is no limit; deg | mm, s.
+    """
+
+    position: list[Limit] | Literal[False] | None = None
+    speed: list[Limit] | Literal[False] | None = None
+    acceleration: list[Limit] | Literal[False] | None = None
+
+
+class RobotSection(Section):
+    """The robot: model, tool frame, locked joints, posture and weights."""
+
+    model: str | None = None
+    tip: str | None = None
+    locked: dict[str, Number] = Field(default_factory=dict)
+    start: list[Number] | None = None
+    weights: list[Positive] | None = None
+    status_joints: list[str] = Field(default_factory=list)
+    limits: LimitsSection = Field(default_factory=LimitsSection)
+
+
+class MotionSection(Section):
+    """Defaults of the R_ variables: mm/s, mm/s2, deg/s, deg/s2, %; the tick in ms."""
+
+    tick_ms: Annotated[float, Field(ge=0.25, le=1000.0)] = 10.0
+    speed: Positive = 250.0
+    acc: Positive = 1000.0
+    speed_ori: Positive = 90.0
+    acc_ori: Positive = 180.0
+    speed_ptp: Percent = 100.0
+    acc_ptp: Percent = 100.0
+
+
+class FrameSection(Section):
+    """A named pose: mm, and degrees about the fixed x, y, z axes."""
+
+    xyz: Vector = Field(default_factory=lambda: [0.0, 0.0, 0.0])
+    rpy: Vector = Field(default_factory=lambda: [0.0, 0.0, 0.0])
+
+
+class CellFile(Section):
+    """A whole cell file. `obstacle` and `signals` are kept for later versions and not looked into."""
+
+    robot: RobotSection = Field(default_factory=RobotSection)
+    motion: MotionSection = Field(default_factory=MotionSection)
+    frames: dict[str, FrameSection] = Field(default_factory=dict)
+    obstacle: list[dict[str, Any]] = Field(default_factory=list)
+    signals: dict[str, Any] = Field(default_factory=dict)

@@ -1,0 +1,38 @@
+"""Checks without motion: what `irlx.check` and `irlx check` say of a program and its cell."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from irlx.diagnostics import Diagnostic, IrlxError
+from irlx.interpreter.support import unsupported
+from irlx.language import tree
+from irlx.program import ProgramError, analyse_file
+
+PathLike = str | os.PathLike[str]
+
+
+def check(program: PathLike, cell: PathLike | None = None) -> list[Diagnostic]:
+    """All findings on a program, and on a cell file where one is given; raises nothing for its input.
+
+    Without a cell this loads neither numpy nor Pinocchio.
+    """
+    try:
+        analysis = analyse_file(program)
+    except ProgramError as error:
+        return list(error.diagnostics)
+    found = list(analysis.diagnostics)
+    if isinstance(analysis.tree, tree.Program):
+        found += unsupported(analysis.tree, analysis.source)
+    return found + _cell_findings(cell) if cell is not None else found
+
+
+def _cell_findings(cell: PathLike) -> list[Diagnostic]:
+    # Imported here: validating a cell loads numpy, and most checks have no cell.
+    from irlx.cell.load import load_cell
+
+    try:
+        return list(load_cell(Path(cell)).warnings)
+    except IrlxError as error:
+        return list(error.diagnostics)

@@ -1,0 +1,69 @@
+"""`irlx`: argument parser, dispatch, exit codes.
+
+0 fine; 1 findings, or a program that ended in a robot error; 2 usage, configuration or internal
+error; 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+
+from irlx._version import __version__
+from irlx.cli import blocks, check, run, verify
+from irlx.cli.output import exit_code, print_diagnostics
+from irlx.diagnostics import IrlxError, report
+
+_COMMANDS = (run, check, blocks, verify)
+_EXAMPLE = """\
+examples:
+  irlx run programs/koch/square.irl
+  irlx check programs/koch/square.irl
+  irlx verify programs/koch/square.irdata
+"""
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """Parser of the whole command line."""
+    parser = argparse.ArgumentParser(
+        prog="irlx",
+        description="Run robot programs in the irlx profile of IRL; joint streams come out, verified.",
+        epilog=_EXAMPLE,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action="version", version=f"irlx {__version__}")
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    for module in _COMMANDS:
+        module.add_parser(commands)
+    return parser
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command; returns its exit code. Raises SystemExit for usage errors and --help."""
+    options = build_parser().parse_args(arguments)
+    try:
+        code = options.command(options)
+    except IrlxError as error:
+        print_diagnostics(error.diagnostics)
+        return exit_code(error.diagnostics)
+    except KeyboardInterrupt:
+        return 130
+    except BrokenPipeError:
+        # The reader of our output went away: nothing is wrong, nothing more can be said.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except Exception as error:
+        # The last fence: a fault of irlx itself must still be a message, not a traceback.
+        if os.environ.get("IRLX_DEBUG"):
+            raise
+        fault = report("IRL090", cause=f"{type(error).__name__}: {error}")
+        print_diagnostics((fault,))
+        return 2
+    return int(code)
+
+
+def entry_point() -> None:
+    """Console entry: `irlx`."""
+    sys.exit(main())

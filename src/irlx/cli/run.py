@@ -1,0 +1,162 @@
+"""`irlx run`: interpret, move, write, verify, summarise."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+from contextlib import AbstractContextManager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from irlx.report.run import Run
+
+_EXAMPLE = """\
+examples:
+  irlx run programs/koch/square.irl
+  irlx run programs/koch/square.irl --tick 10 -o square.npz -o square.csv
+"""
+
+
+def add_parser(commands: Any) -> None:
+    """Add the command to the command line."""
+    parser = commands.add_parser(
+        "run",
+        help="run a program and write its joint stream",
+        description="Interpret a program, move its robot, write the joint stream, verify what was written.",
+        epilog=_EXAMPLE,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("program", metavar="P.irl", help="program file")
+    parser.add_argument("--cell", metavar="C.toml", help="cell file (default: found beside the program)")
+    parser.add_argument(
+        "-o",
+        "--output",
+        action="append",
+        default=[],
+        metavar="OUT",
+        help="stream file, format by its ending: .irdata, .npz or .csv; may be given several times "
+        "(default: P.irdata beside the program, or in the working folder)",
+    )
+    parser.add_argument("--tick", type=float, metavar="MS", help="duration of a tick (default: the cell's)")
+    parser.add_argument("--json", action="store_true", help="print the summary as JSON")
+    parser.add_argument("--quiet", action="store_true", help="no progress, no summary")
+    parser.add_argument("--no-verify", action="store_true", help="do not check the written files")
+    parser.set_defaults(command=command)
+
+
+def command(options: argparse.Namespace) -> int:
+    """Run the program; exit code 1 where it ended in an error or the verification failed."""
+    from irlx.cli.output import exit_code, print_diagnostics
+    from irlx.pipeline import execute, prepare
+    from irlx.report.run import RunError, RunInterrupted
+
+    job = prepare(options.program, options.cell, options.tick)
+    inputs = (job.program.path, Path(job.cell.file))
+    outputs = output_paths(options.output, job.program.path, inputs)
+    try:
+        with _progress(options) as progress:
+            run = execute(job, progress)
+    except RunError as error:
+        print_diagnostics(error.diagnostics)
+        _keep_partial(error.run, outputs, options)
+        return exit_code(error.diagnostics)
+    except RunInterrupted as interrupt:
+        print("irlx: interrupted", file=sys.stderr)
+        _keep_partial(interrupt.run, outputs, options)
+        return 130
+    if not options.quiet:
+        print_diagnostics(run.diagnostics)
+    for path in outputs:
+        run.save(path)
+    reports = {} if options.no_verify else {str(path): _verified(path, options) for path in outputs}
+    _print_summary(run, outputs, reports, options)
+    return 0 if all(report.passed for report in reports.values()) else 1
+
+
+def output_paths(asked: list[str], program: Path, inputs: tuple[Path, ...]) -> list[Path]:
+    """Files to write, checked before anything moves.
+
+    Raises StreamError: IRL003 not writable, IRL004 unknown ending, IRL005 an input would be overwritten.
+    """
+    from irlx.diagnostics import report
+    from irlx.streams.atomic import check_writable
+    from irlx.streams.error import StreamError
+    from irlx.streams.formats import KNOWN_ENDINGS
+
+    paths = [Path(name) for name in asked] or [_default_output(program)]
+    for path in paths:
+        if path.suffix.lower() not in KNOWN_ENDINGS:
+            known = ", ".join(KNOWN_ENDINGS)
+            raise StreamError(report("IRL004", path=path, ending=path.suffix, known=known))
+        if any(path.exists() and source.exists() and path.samefile(source) for source in inputs):
+            raise StreamError(report("IRL005", path=path))
+        check_writable(path)
+    return paths
+
+
+def _default_output(program: Path) -> Path:
+    beside = program.with_suffix(".irdata")
+    return beside if os.access(beside.parent, os.W_OK) else Path(beside.name)
+
+
+def _progress(options: argparse.Namespace) -> AbstractContextManager[Any]:
+    from contextlib import nullcontext
+
+    if options.quiet or options.json or not sys.stderr.isatty():
+        return nullcontext()
+    from irlx.report.progress import LiveProgress
+
+    return LiveProgress()
+
+
+def _keep_partial(run: Run, outputs: list[Path], options: argparse.Namespace) -> None:
+    """Write what was executed under names of its own: the asked names only ever hold complete streams."""
+    if run.t.size > 1:
+        for path in outputs:
+            partial = path.with_name(f"{path.stem}.partial{path.suffix}")
+            run.save(partial)
+            words = f"the stream up to the last stop ({run.t[-1]:.6g} s), marked incomplete: {partial}"
+            print(f"irlx: {words}", file=sys.stderr)
+    if options.json:
+        print(
+            json.dumps({"summary": run.summary.to_plain(), "diagnostics": _plain_diagnostics(run)}, indent=2)
+        )
+
+
+def _plain_diagnostics(run: Run) -> list[dict[str, object]]:
+    return [
+        {"code": d.code, "severity": d.severity.value, "message": d.message, "place": str(d.place or "")}
+        for d in run.diagnostics
+    ]
+
+
+def _verified(path: Path, options: argparse.Namespace) -> Any:
+    from irlx.verification import verify
+
+    return verify(path, options.program, options.cell or None)
+
+
+def _print_summary(
+    run: Run, outputs: list[Path], reports: dict[str, Any], options: argparse.Namespace
+) -> None:
+    from irlx.report.terminal import summary_text, verification_line
+
+    if options.json:
+        plain = {
+            "summary": run.summary.to_plain(),
+            "files": [str(path) for path in outputs],
+            "verified": {name: report.passed for name, report in reports.items()},
+            "diagnostics": _plain_diagnostics(run),
+        }
+        print(json.dumps(plain, indent=2))
+        return
+    if not options.quiet:
+        print(summary_text(run.summary, run.stream.header.joint_units, run.joint_names))
+        for path in outputs:
+            print(f"{'written':<12}{path}")
+    for name, report in reports.items():
+        if not options.quiet or not report.passed:
+            print(verification_line(name, report))

@@ -1,0 +1,35 @@
+"""`irlx verify`: independent check of a written stream."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from typing import Any
+
+_EXAMPLE = "example:\n  irlx verify programs/koch/square.irdata --program programs/koch/square.irl\n"
+
+
+def add_parser(commands: Any) -> None:
+    """Add the command to the command line."""
+    parser = commands.add_parser(
+        "verify",
+        help="check a written joint stream independently",
+        description="Check a written joint stream: limits by differences, path, goals, checksum.",
+        epilog=_EXAMPLE,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("stream", metavar="OUT", help="stream file: .irdata, .npz or .csv")
+    parser.add_argument("--cell", metavar="C.toml", help="cell file with the robot (default: as recorded)")
+    parser.add_argument("--program", metavar="P.irl", help="require that the stream comes from this program")
+    parser.add_argument("--json", action="store_true", help="print the report as JSON")
+    parser.set_defaults(command=command)
+
+
+def command(options: argparse.Namespace) -> int:
+    """Print the table of checks on stdout; 1 where one fails."""
+    from irlx.streams.verify import render_table, to_plain
+    from irlx.verification import verify
+
+    report = verify(options.stream, options.program, options.cell)
+    print(json.dumps(to_plain(report), indent=2) if options.json else render_table(report))
+    return 0 if report.passed else 1

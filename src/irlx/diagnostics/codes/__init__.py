@@ -1,0 +1,28 @@
+"""The catalogue of codes: severity, message and help of each; `docs/diagnostics/` has a page for each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from irlx.diagnostics.codes.cell import CELL
+from irlx.diagnostics.codes.code import Code, Severity
+from irlx.diagnostics.codes.command import COMMAND
+from irlx.diagnostics.codes.motion import MOTION
+from irlx.diagnostics.codes.names import NAMES
+from irlx.diagnostics.codes.pacing import PACING
+from irlx.diagnostics.codes.redundancy import REDUNDANCY
+from irlx.diagnostics.codes.run import RUN
+from irlx.diagnostics.codes.stream import STREAM
+from irlx.diagnostics.codes.syntax import SYNTAX
+from irlx.diagnostics.codes.types import TYPES
+
+CATALOGUE: Mapping[str, Code] = MappingProxyType(
+    {
+        code.id: code
+        for group in (COMMAND, SYNTAX, NAMES, TYPES, REDUNDANCY, MOTION, PACING, RUN, CELL, STREAM)
+        for code in group
+    }
+)
+
+__all__ = ["CATALOGUE", "Code", "Severity"]

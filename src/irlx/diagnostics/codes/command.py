@@ -1,0 +1,19 @@
+"""IRL0xx: the command line, files, and errors of irlx itself."""
+
+from irlx.diagnostics.codes.code import error
+
+COMMAND = (
+    error("IRL001", "no such file: {path}{near}", "give the path of an existing file"),
+    error("IRL002", "cannot read {path}: {cause}"),
+    error("IRL003", "cannot write {path}: {cause}", "name another file with -o"),
+    error("IRL004", "-o {path}: no format has the ending '{ending}'; known: {known}"),
+    error("IRL005", "-o {path} would overwrite an input of this run", "name another file"),
+    error("IRL006", "--tick {value}: {cause}", "give milliseconds, for example --tick 10"),
+    error("IRL007", "{path} is a folder, not a file"),
+    error("IRL008", "{name} is a MODULE, which does not run by itself", "run a PROGRAM that imports from it"),
+    error(
+        "IRL090",
+        "internal error: {cause}",
+        "this is a fault of irlx, not of your program; please report it with the program and the cell",
+    ),
+)

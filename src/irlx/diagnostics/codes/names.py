@@ -1,0 +1,28 @@
+"""IRL2xx: names and types."""
+
+from irlx.diagnostics.codes.code import Code, error, warning
+
+NAMES: tuple[Code, ...] = (
+    error("IRL201", "unknown name '{name}'{near}", "declare it in VAR, CONST or a data list"),
+    error("IRL202", "'{name}' is declared twice", "remove or rename one of the two"),
+    error("IRL203", "MOVE has no parameter '{name}'{near}"),
+    error("IRL204", "unknown type '{name}'{near}", "declare it in TYPE before use"),
+    warning("IRL205", "port '{name}' is not declared", "declare it: VAR OUTPUT BOOL: name AT number;"),
+    error("IRL206", "unknown function '{name}'{near}"),
+    error("IRL207", "unknown procedure '{name}'{near}", "declare it with PROCEDURE"),
+    error(
+        "IRL208",
+        "GOTO '{name}' jumps into a structured statement",
+        "put the label on the level of the GOTO or outside of it",
+    ),
+    error("IRL209", "'{name}' is no function", "an element of an array is taken with [ ]"),
+    warning("IRL210", "no GOTO uses the label '{name}'"),
+    error("IRL211", "'{name}' is {kind} and cannot be set"),
+    error("IRL212", "MOVE parameter '{name}' is given twice"),
+    warning("IRL213", "'{name}' hides a name of the program", "rename the local one if that is not meant"),
+    error("IRL214", "the record has two fields '{name}'"),
+    error("IRL215", "unknown label '{name}'{near}", "write 'name:' before the statement to jump to"),
+    error("IRL217", "EXIT outside of a loop", "EXIT leaves FOR, WHILE or REPEAT; HALT ends the program"),
+    error("IRL218", "no module '{module}'", "a module NAME is the file NAME.irl beside the program"),
+    error("IRL219", "{file} does not export '{name}'{near}", "add it to an EXPORT of the module"),
+)

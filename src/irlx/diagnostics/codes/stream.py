@@ -1,0 +1,43 @@
+"""IRL7xx: joint streams and their verification."""
+
+from irlx.diagnostics.codes.code import Code, error
+
+STREAM: tuple[Code, ...] = (
+    error(
+        "IRL701",
+        "this is no valid {format} file: {reason}",
+        "write the file again with irlx; do not edit it by hand",
+    ),
+    error(
+        "IRL702",
+        "its checksum is {found}..., its content gives {expected}...: the file was changed",
+        "write the file again with irlx; do not edit it by hand",
+    ),
+    error(
+        "IRL703",
+        "tick {tick} follows tick {previous}: ticks must rise",
+        "write the file again with irlx; do not edit it by hand",
+    ),
+    error("IRL704", "it should hold {said} {what}, but {found} are there", "copy or write the file again"),
+    error(
+        "IRL705",
+        "the file ends inside its header, so nothing of the stream can be read",
+        "copy or write the file again",
+    ),
+    error(
+        "IRL706",
+        "the file has format version {found}; this irlx reads version {known}",
+        "read it with the irlx version that wrote it, or run the program again",
+    ),
+    error("IRL707", "{path}: no stream format has the ending '{ending}'; known: {known}"),
+    error(
+        "IRL708",
+        "the stream cannot be written: {reason}",
+        "this is a fault of whatever made the stream, not of your program; please report it",
+    ),
+    error(
+        "IRL709",
+        "the stream fails the check '{check}': {finding}",
+        "run the program again with this irlx; if it fails again, please report it with program and cell",
+    ),
+)

@@ -1,0 +1,38 @@
+"""IRL1xx: the text of a program."""
+
+from irlx.diagnostics.codes.code import Code, error, warning
+
+SYNTAX: tuple[Code, ...] = (
+    error("IRL101", "expected {expected}, found {found}"),
+    error("IRL102", "missing ';' after {construct}", "end it with ';'"),
+    warning("IRL103", "missing ';' after {construct}", "end it with ';'"),
+    warning("IRL104", "missing {word} after the condition of {head}", "write {head} condition {word}"),
+    warning("IRL105", "'=' taken for ':='", "':=' sets a value, '=' compares two"),
+    error("IRL106", "{word} is a keyword and cannot be a name", "choose another name"),
+    error(
+        "IRL107",
+        "missing {closer} for the {opener} of line {line}, found {found}",
+        "close the {opener} with {closer}",
+    ),
+    error("IRL108", "{word} without {opener}", "remove it, or write the {opener} that it closes"),
+    error("IRL109", "nothing may follow the end of the program, found {found}"),
+    error("IRL110", "comment without end", "close {{ with }} and (* with *); comments do not nest"),
+    error("IRL111", "text without closing {quote}", "a text ends on its line; a quote inside is doubled"),
+    error("IRL112", "{character} has no meaning outside texts and comments"),
+    error("IRL113", "number outside the range of {type}"),
+    error(
+        "IRL114",
+        "{item} stands after WITH or out of order in the MOVE",
+        "the order is: targets, then name := value, then WITH clauses",
+    ),
+    error("IRL115", "comparisons cannot be chained", "compare twice and join with AND: a < b AND b < c"),
+    error(
+        "IRL116",
+        "expected PROGRAM or MODULE at the start, found {found}",
+        "begin the file with PROGRAM name; or MODULE name;",
+    ),
+    error("IRL117", "the file holds no program", "begin it with PROGRAM name;"),
+    error("IRL118", "{what} nested deeper than {limit} levels", "use variables for parts, or procedures"),
+    error("IRL130", "not UTF-8 text: byte {byte} at offset {offset}", "save the file as UTF-8"),
+    error("IRL131", "not a text file: NUL byte at offset {offset}", "save the file as UTF-8 text"),
+)

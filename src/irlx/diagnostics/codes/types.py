@@ -1,0 +1,22 @@
+"""IRL22x: types and values."""
+
+from irlx.diagnostics.codes.code import error
+
+TYPES = (
+    error(
+        "IRL221",
+        "type {type} is defined with {found} fields, but the robot has {joints} joints",
+        "give it one field a joint: {names}",
+    ),
+    error("IRL222", "expected {expected}, found {found}"),
+    error("IRL223", "{type} takes {expected} values, found {found}"),
+    error("IRL225", "{type} has no field '{name}'{near}"),
+    error("IRL227", "{op} is not defined for {left} and {right}"),
+    error("IRL228", "{function} takes {expected}, found {found}"),
+    error(
+        "IRL229",
+        "these values could be {candidates}",
+        "say which with a constructor, or use a declared variable",
+    ),
+    error("IRL230", "an orientation needs a quaternion of length 1, found length {length}"),
+)

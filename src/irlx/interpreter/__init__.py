@@ -1,0 +1,1 @@
+"""Interpreter: program tree and answers -> function blocks, as a generator that is pulled ahead."""

@@ -1,0 +1,123 @@
+"""Declarations: from the text of a program part to its scope."""
+
+from __future__ import annotations
+
+from irlx.diagnostics import SourceText
+from irlx.diagnostics.diagnostic import near_matches
+from irlx.interpreter.errors import fail
+from irlx.interpreter.evaluate import Evaluator
+from irlx.interpreter.scope import Scope, Variable
+from irlx.interpreter.setting import SYSTEM_REALS, Setting
+from irlx.interpreter.support import part_name
+from irlx.interpreter.types import JOINT_RECORDS, POSE, REAL, Array, Record, Type, predefined_types
+from irlx.interpreter.values import RecordValue, Value, unset_value
+from irlx.language import tree
+
+
+def declared_scope(program: tree.Program, source: SourceText, setting: Setting) -> Scope:
+    """Scope of a program: system variables, poses of the cell, then what the program declares.
+
+    Raises InterpreterError: IRL221 for a joint type that does not fit the robot, IRL204 for an
+    unknown type, IRL590 for a part that is not executed yet, and what initial values may raise.
+    """
+    scope = Scope(types=predefined_types(len(setting.joint_names)))
+    for name in SYSTEM_REALS:
+        scope.variables[name.casefold()] = Variable(name, REAL, float(setting.defaults[name]))
+    for name, (at, turned) in setting.poses.items():
+        value = RecordValue(POSE, (_reals(POSE, 0, at), _reals(POSE, 1, turned)))
+        scope.variables[name.casefold()] = Variable(name, POSE, value, constant=True)
+    scope.variables["r_joint_act"] = _actual_joints(scope)
+    _Declarer(source, scope, setting).program(program)
+    return scope
+
+
+def _reals(record: Record, field: int, values: tuple[float, ...]) -> Value:
+    type = record.fields[field][1]
+    if not isinstance(type, Record):
+        raise TypeError("parts of a pose are records")
+    return RecordValue(type, values)
+
+
+def _actual_joints(scope: Scope) -> Variable:
+    type = scope.types["joint"]
+    return Variable("R_JOINT_ACT", type, unset_value(type), constant=True)
+
+
+class _Declarer:
+    def __init__(self, source: SourceText, scope: Scope, setting: Setting) -> None:
+        self._source = source
+        self._scope = scope
+        self._setting = setting
+        self._evaluator = Evaluator(source, scope)
+
+    def program(self, program: tree.Program) -> None:
+        for part in program.declarations:
+            if isinstance(part, tree.TypeDefinition):
+                self._define(part)
+            elif isinstance(part, tree.VarDeclaration):
+                self._variables(part.type, part.variables, constant=False)
+            elif isinstance(part, tree.ConstDeclaration):
+                self._variables(part.type, part.constants, constant=True)
+            elif not isinstance(part, tree.SystemSpecification):
+                raise fail("IRL590", self._source, part.span, what=part_name(part))
+
+    def _define(self, part: tree.TypeDefinition) -> None:
+        type = self._type(part.type)
+        if isinstance(type, Record):
+            type = Record(part.name.name, type.fields)
+        joints = self._setting.joint_names
+        if part.name.key in JOINT_RECORDS and (
+            not isinstance(type, Record) or len(type.fields) != len(joints)
+        ):
+            found = len(type.fields) if isinstance(type, Record) else 1
+            data = {"type": part.name.name, "found": found, "joints": len(joints), "names": ", ".join(joints)}
+            raise fail("IRL221", self._source, part.name.span, **data)
+        self._scope.types[part.name.key] = type
+
+    def _variables(
+        self, form: tree.TypeForm, variables: tuple[tree.Variable, ...], *, constant: bool
+    ) -> None:
+        type = self._type(form)
+        for variable in variables:
+            value = unset_value(type)
+            if variable.initial is not None:
+                value = self._evaluator.value(variable.initial, type)
+            name = variable.name
+            self._scope.variables[name.key] = Variable(name.name, type, value, constant)
+
+    def _type(self, form: tree.TypeForm) -> Type:
+        if isinstance(form, tree.NamedType):
+            return self._named(form.name)
+        if isinstance(form, tree.ArrayType):
+            return self._array(form)
+        fields: list[tuple[str, Type]] = []
+        for group in form.groups:
+            type = self._type(group.type)
+            fields += [(name.name, type) for name in group.names]
+        return Record("RECORD", tuple(fields))
+
+    def _named(self, name: tree.Name) -> Type:
+        found = self._scope.types.get(name.key)
+        if found is not None:
+            return found
+        if name.key in _LATER_TYPES:
+            raise fail("IRL590", self._source, name.span, what=f"the type {name.name}")
+        near = near_matches(name.name, [key.upper() for key in self._scope.types])
+        raise fail("IRL204", self._source, name.span, name=name.name, near=near)
+
+    def _array(self, form: tree.ArrayType) -> Type:
+        ranges = []
+        for dimension in form.dimensions:
+            low, high = self._evaluator.whole(dimension.lower), self._evaluator.whole(dimension.upper)
+            if low > high:
+                data = {"index": high, "name": "ARRAY", "low": low, "high": "..."}
+                raise fail("IRL504", self._source, dimension.span, **data)
+            ranges.append((low, high))
+        array = Array(tuple(ranges), self._type(form.element))
+        if array.size > _MOST_ELEMENTS:
+            raise fail("IRL507", self._source, form.span, size=array.size, most=_MOST_ELEMENTS)
+        return array
+
+
+_MOST_ELEMENTS = 10_000_000
+_LATER_TYPES = frozenset({"char", "character", "file", "semaphore", "signal", "robtarget"})

@@ -1,0 +1,249 @@
+"""Values of expressions."""
+
+from __future__ import annotations
+
+from irlx.diagnostics import SourceText
+from irlx.diagnostics.diagnostic import near_matches
+from irlx.interpreter.conversion import Where, assemble, fit, part_type, whole_number
+from irlx.interpreter.errors import InterpreterError, fail
+from irlx.interpreter.functions import FUNCTIONS, Function
+from irlx.interpreter.operators import binary, unary
+from irlx.interpreter.scope import Scope, Variable
+from irlx.interpreter.types import INT, ORIENTATION, REAL, Array, Record, Type
+from irlx.interpreter.values import ArrayValue, RecordValue, Unset, Value, is_set, type_name
+from irlx.language import tree
+
+
+class Evaluator:
+    """Evaluates expressions of one program in its scope.
+
+    `expected` is the type that the place of an expression asks for; aggregates take their type from
+    it. All methods raise InterpreterError with the span of the part that is wrong.
+    """
+
+    def __init__(self, source: SourceText, scope: Scope) -> None:
+        self.source = source
+        self.scope = scope
+
+    def where(self, node: tree.Node) -> Where:
+        """Place of a node for messages."""
+        return Where(self.source, node.span)
+
+    def value(self, node: tree.Argument, expected: Type | None = None) -> Value:
+        """Value of an expression, fitted to the expected type where one is given."""
+        if isinstance(node, tree.Aggregate | tree.Paren):
+            return self._in_parentheses(node, expected)
+        found = self._plain(node)
+        return found if expected is None else fit(found, expected, self.where(node))
+
+    def number(self, node: tree.Expression) -> float:
+        """Value of an expression that must be a number."""
+        value = self.value(node, REAL)
+        if not isinstance(value, float):
+            raise TypeError("a fitted REAL is a float")
+        return value
+
+    def whole(self, node: tree.Expression) -> int:
+        """Value of an expression that must be a whole number."""
+        value = self.value(node, INT)
+        if not isinstance(value, int):
+            raise TypeError("a fitted INT is an int")
+        return value
+
+    # ---- expressions without an expected type
+
+    def _plain(self, node: tree.Argument) -> Value:
+        match node:
+            case tree.IntLiteral():
+                return whole_number(node.value, f"the number {node.value}", self.where(node))
+            case tree.RealLiteral() | tree.BoolLiteral() | tree.StringLiteral():
+                return node.value
+            case tree.Designator():
+                return self._designated(node)
+            case tree.FunctionCall():
+                return self._call(node.name, node.arguments, node)
+            case tree.Unary():
+                return unary(node.op, self.value(node.operand), self.where(node))
+            case tree.Binary():
+                return self._binary(node)
+            case _:
+                raise fail("IRL590", self.source, node.span, what="this expression")
+
+    def _binary(self, node: tree.Binary) -> Value:
+        left = self.value(node.left)
+        if node.op in ("AND", "OR"):
+            if not isinstance(left, bool):
+                raise fail("IRL222", self.source, node.left.span, expected="BOOL", found=type_name(left))
+            if left is (node.op == "OR"):
+                return left
+            right = self.value(node.right)
+            if not isinstance(right, bool):
+                raise fail("IRL222", self.source, node.right.span, expected="BOOL", found=type_name(right))
+            return right
+        return binary(node.op, left, self.value(node.right), self.where(node))
+
+    def _in_parentheses(self, node: tree.Aggregate | tree.Paren, expected: Type | None) -> Value:
+        items = node.items if isinstance(node, tree.Aggregate) else (node.value,)
+        if isinstance(node, tree.Paren) and not _one_part(expected):
+            return self.value(node.value, expected)
+        if not isinstance(expected, Record | Array):
+            name = expected.name if expected is not None else "a single value"
+            raise fail("IRL222", self.source, node.span, expected=name, found=f"{len(items)} values")
+        parts = [self.value(item, part_type(expected, index)) for index, item in enumerate(items)]
+        return assemble(expected, parts, self.where(node))
+
+    # ---- functions
+
+    def _call(self, name: tree.Name, arguments: tuple[tree.Expression, ...], node: tree.Node) -> Value:
+        function = FUNCTIONS.get(name.key)
+        if function is None:
+            raise fail("IRL590", self.source, name.span, what=f"the function {name.name}")
+        if len(arguments) != len(function.parameters):
+            expected = _count(len(function.parameters), "value")
+            data = {"function": function.name, "expected": expected, "found": len(arguments)}
+            raise fail("IRL228", self.source, node.span, **data)
+        pairs = zip(arguments, function.parameters, strict=True)
+        return self._apply(function, [self.value(argument, type) for argument, type in pairs], node)
+
+    def _apply(self, function: Function, values: list[Value], node: tree.Node) -> Value:
+        if function.name == "ORIQUAT":
+            # The general path for orientations: it refuses what is no unit quaternion.
+            return assemble(ORIENTATION, values, self.where(node))
+        try:
+            return function.apply(*values)
+        except (ValueError, OverflowError):
+            shown = ", ".join(
+                f"{value:g}" if isinstance(value, float) else type_name(value) for value in values
+            )
+            raise fail("IRL506", self.source, node.span, function=function.name, value=shown) from None
+
+    # ---- designators
+
+    def variable(self, name: tree.Name) -> Variable:
+        """The variable of a name. Raises InterpreterError, IRL201, with near matches."""
+        found = self.scope.variables.get(name.key)
+        if found is None:
+            known = [variable.name for variable in self.scope.variables.values()]
+            raise fail("IRL201", self.source, name.span, name=name.name, near=near_matches(name.name, known))
+        return found
+
+    def _designated(self, node: tree.Designator) -> Value:
+        if not node.selectors and node.base.key not in self.scope.variables and node.base.key in FUNCTIONS:
+            return self._call(node.base, (), node)
+        value: Value = self.variable(node.base).value
+        for step in self.steps(node):
+            value = _part(value, step)
+        if isinstance(value, Unset) or not is_set(value):
+            raise fail(
+                "IRL501", self.source, node.span, name=self.source.text[node.span.start : node.span.end]
+            )
+        return value
+
+    def steps(self, node: tree.Designator) -> list[int]:
+        """Positions to descend by from the variable to the part that a designator names.
+
+        A dotted field is taken as long as it is declared: of `a1` and `a1.max`, `v.a1.max` is the latter.
+        """
+        type: Type = self.variable(node.base).type
+        steps: list[int] = []
+        selectors = list(node.selectors)
+        while selectors:
+            selector = selectors[0]
+            if isinstance(selector, tree.Index):
+                position, type = self._element(type, selector, node)
+                selectors = selectors[1:]
+            else:
+                position, type, used = self._field(type, selectors, node)
+                selectors = selectors[used:]
+            steps.append(position)
+        return steps
+
+    def _field(
+        self, type: Type, selectors: list[tree.Selector], node: tree.Designator
+    ) -> tuple[int, Type, int]:
+        fields: list[tree.Field] = []
+        for selector in selectors:
+            if not isinstance(selector, tree.Field):
+                break
+            fields.append(selector)
+        index = type.index if isinstance(type, Record) else {}
+        for used in range(len(fields), 0, -1):
+            position = index.get(".".join(field.key for field in fields[:used]))
+            if position is not None and isinstance(type, Record):
+                return position, type.fields[position][1], used
+        known = [name for name, _ in type.fields] if isinstance(type, Record) else []
+        name = ".".join(field.name for field in fields)
+        data = {"type": type.name, "name": name, "near": near_matches(name, known)}
+        raise fail("IRL225", self.source, selectors[0].span, **data)
+
+    def _element(self, type: Type, selector: tree.Index, node: tree.Designator) -> tuple[int, Type]:
+        if not isinstance(type, Array):
+            raise fail("IRL222", self.source, selector.span, expected="an ARRAY before [", found=type.name)
+        if len(selector.indices) != len(type.ranges):
+            data = {"type": type.name, "expected": len(type.ranges), "found": len(selector.indices)}
+            raise fail("IRL223", self.source, selector.span, **data)
+        position = 0
+        for expression, (low, high) in zip(selector.indices, type.ranges, strict=True):
+            index = self.whole(expression)
+            if not low <= index <= high:
+                data = {"index": index, "name": node.base.name, "low": low, "high": high}
+                raise fail("IRL504", self.source, expression.span, **data)
+            position = position * (high - low + 1) + index - low
+        return position, type.element
+
+    # ---- values that could be of several types
+
+    def one_of(self, node: tree.Expression, candidates: tuple[Type, ...]) -> Value:
+        """Value of an expression that must be of exactly one of several types (targets of MOVE)."""
+        if not isinstance(node, tree.Aggregate):
+            value = self.value(node)
+            if any(isinstance(value, RecordValue) and value.type == type for type in candidates):
+                return value
+            expected = " or ".join(type.name for type in candidates)
+            raise fail("IRL222", self.source, node.span, expected=expected, found=type_name(value))
+        fitting: list[Value] = []
+        for type in candidates:
+            try:
+                fitting.append(self.value(node, type))
+            except InterpreterError as error:
+                # Another code means that the aggregate fits and is wrong inside: that is the message to give.
+                if error.reason.code not in ("IRL222", "IRL223"):
+                    raise
+        if len(fitting) == 1:
+            return fitting[0]
+        names = [type_name(value) for value in fitting]
+        if fitting:
+            raise fail("IRL229", self.source, node.span, candidates=" or ".join(names))
+        expected = " or ".join(type.name for type in candidates)
+        raise fail(
+            "IRL222", self.source, node.span, expected=expected, found=_count(len(node.items), "value")
+        )
+
+
+def _one_part(type: Type | None) -> bool:
+    if isinstance(type, Record):
+        return len(type.fields) == 1
+    return isinstance(type, Array) and type.size == 1
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
+def _part(value: Value, position: int) -> Value:
+    if not isinstance(value, RecordValue | ArrayValue):
+        raise TypeError("only structures have parts")
+    return value.values[position]
+
+
+def replaced(value: Value, steps: list[int], new: Value) -> Value:
+    """Copy of a structured value with the part at `steps` replaced."""
+    if not steps:
+        return new
+    if not isinstance(value, RecordValue | ArrayValue):
+        raise TypeError("only structures have parts")
+    parts = list(value.values)
+    parts[steps[0]] = replaced(parts[steps[0]], steps[1:], new)
+    if isinstance(value, RecordValue):
+        return RecordValue(value.type, tuple(parts))
+    return ArrayValue(value.type, tuple(parts))

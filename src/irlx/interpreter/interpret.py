@@ -1,0 +1,239 @@
+"""Statements: program tree -> blocks."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from math import radians
+
+from irlx.blocks import (
+    AskPosture,
+    Block,
+    CyclicBlock,
+    FreezeBlock,
+    HaltBlock,
+    JointRange,
+    JointTarget,
+    LimitClause,
+    LimitKind,
+    LimitSwitchBlock,
+    MotionLaw,
+    MoveBlock,
+    MoveKind,
+    Origin,
+    PoseTarget,
+    Question,
+)
+from irlx.diagnostics import SourceText
+from irlx.interpreter.declare import declared_scope
+from irlx.interpreter.errors import fail
+from irlx.interpreter.evaluate import Evaluator, replaced
+from irlx.interpreter.functions import parts_of, vector_of
+from irlx.interpreter.quaternion import Vector
+from irlx.interpreter.scope import Variable
+from irlx.interpreter.setting import Setting
+from irlx.interpreter.support import MOVE_PARAMS, missing_in_move, part_name, reads_actual
+from irlx.interpreter.types import POSE, POSITION, Record, Type
+from irlx.interpreter.values import RecordValue, Value, is_set
+from irlx.language import tree
+
+Answer = tuple[float, ...] | None
+Blocks = Generator[Block | Question, Answer, None]
+
+_LIMIT_TYPES = {
+    "POSITION": ("main_joint_min", "main_joint_max"),
+    "SPEED": ("main_joint_speed_min", "main_joint_speed_max"),
+    "ACCELERATION": ("main_joint_accel_min", "main_joint_accel_max"),
+}
+
+
+def interpret(program: tree.Program, source: SourceText, setting: Setting) -> Blocks:
+    """Run a program: yields its blocks in order, and questions whose answers are sent back in.
+
+    Raises InterpreterError at the statement that goes wrong; the blocks before it stay valid.
+    """
+    return _Interpreter(program, source, setting).run()
+
+
+class _Interpreter:
+    def __init__(self, program: tree.Program, source: SourceText, setting: Setting) -> None:
+        self._program = program
+        self._source = source
+        self._setting = setting
+        self._scope = declared_scope(program, source, setting)
+        self._evaluator = Evaluator(source, self._scope)
+        self._blocks = 0
+
+    def run(self) -> Blocks:
+        for statement in self._program.body:
+            if reads_actual(statement):
+                answer = yield AskPosture(self._origin(statement))
+                self._set_actual(answer or ())
+            match statement:
+                case tree.Assignment():
+                    self._assign(statement)
+                case tree.Move():
+                    yield from self._move(statement)
+                case tree.Halt():
+                    yield HaltBlock(id=self._next_id(), origin=self._origin(statement))
+                    return
+                case _:
+                    yield self._switch(statement)
+
+    # ---- bookkeeping
+
+    def _next_id(self) -> int:
+        self._blocks += 1
+        return self._blocks
+
+    def _origin(self, node: tree.Node) -> Origin:
+        line, _ = self._source.line_and_column(node.span.start)
+        return Origin(self._source.name, node.span.start, node.span.end, line)
+
+    def _set_actual(self, joints: tuple[float, ...]) -> None:
+        """Store the posture (rad, m) in R_JOINT_ACT (deg, mm)."""
+        variable = self._scope.variables["r_joint_act"]
+        scaled = tuple(value / self._unit(index) for index, value in enumerate(joints))
+        if isinstance(variable.value, RecordValue) and isinstance(variable.type, Record):
+            main = variable.type.fields[0][1]
+            if isinstance(main, Record):
+                variable.value = replaced(variable.value, [0], RecordValue(main, scaled))
+
+    def _unit(self, joint: int) -> float:
+        """Size of the program's unit of a joint in SI: mm in m, or degree in rad."""
+        return 1e-3 if self._setting.prismatic[joint] else radians(1.0)
+
+    def _si(self, joint: int, value: float) -> float:
+        return value * 1e-3 if self._setting.prismatic[joint] else radians(value)
+
+    # ---- statements
+
+    def _assign(self, statement: tree.Assignment) -> None:
+        variable = self._evaluator.variable(statement.target.base)
+        if variable.constant:
+            raise fail("IRL211", self._source, statement.target.span, name=variable.name, kind="a constant")
+        steps = self._evaluator.steps(statement.target)
+        value = self._evaluator.value(statement.value, _part_type(variable, steps))
+        variable.value = replaced(variable.value, steps, value)
+
+    def _switch(self, statement: tree.Statement) -> Block:
+        origin, id = self._origin(statement), self._next_id()
+        match statement:
+            case tree.LimitSwitch():
+                joint_range = self._range(statement.kind, statement.lower, statement.upper)
+                return LimitSwitchBlock(
+                    id=id, origin=origin, kind=LimitKind(statement.kind), range=joint_range
+                )
+            case tree.LimitSwitchEnd():
+                return LimitSwitchBlock(id=id, origin=origin, kind=LimitKind(statement.kind), range=None)
+            case tree.FreezeStart():
+                joints = tuple(self._evaluator.whole(joint) for joint in statement.joints)
+                return FreezeBlock(id=id, origin=origin, joints=joints)
+            case tree.FreezeEnd():
+                return FreezeBlock(id=id, origin=origin, joints=())
+            case tree.CyclicStart():
+                return CyclicBlock(id=id, origin=origin, active=True)
+            case tree.CyclicEnd():
+                return CyclicBlock(id=id, origin=origin, active=False)
+            case _:
+                raise fail("IRL590", self._source, statement.span, what=part_name(statement))
+
+    def _range(self, kind: str, lower: tree.Expression, upper: tree.Expression) -> JointRange:
+        types = tuple(self._scope.types[key] for key in _LIMIT_TYPES[kind])
+        bounds = []
+        for expression, type in zip((lower, upper), types, strict=True):
+            value = self._evaluator.value(expression, type)
+            bounds.append(self._joint_values(value))
+        return JointRange(*bounds)
+
+    def _joint_values(self, value: Value) -> tuple[float, ...]:
+        if not isinstance(value, RecordValue):
+            raise TypeError("joint values come in a record")
+        return tuple(self._si(index, real) for index, real in enumerate(value.reals()))
+
+    # ---- moves
+
+    def _move(self, statement: tree.Move) -> Blocks:
+        missing = missing_in_move(statement)
+        if missing is not None:
+            node, what = missing
+            raise fail("IRL590", self._source, node.span, what=what)
+        law = self._law(statement)
+        limits = tuple(
+            LimitClause(LimitKind(clause.kind), self._range(clause.kind, clause.lower, clause.upper), origin)
+            for clause in statement.clauses
+            if isinstance(clause, tree.WithLimit)
+            for origin in (self._origin(clause),)
+        )
+        for expression in statement.targets:
+            target = self._target(expression, statement)
+            yield MoveBlock(
+                id=self._next_id(),
+                origin=self._origin(statement if len(statement.targets) == 1 else expression),
+                kind=MoveKind(statement.kind),
+                target=target,
+                law=law,
+                limits=limits,
+            )
+
+    def _target(self, expression: tree.Expression, statement: tree.Move) -> PoseTarget | JointTarget:
+        main, joint = self._scope.types["main_joint"], self._scope.types["joint"]
+        value = self._evaluator.one_of(expression, (POSE, POSITION, main, joint))
+        if not isinstance(value, RecordValue):
+            raise TypeError("targets are records")
+        if value.type == POSITION:
+            return PoseTarget(_metres(vector_of(value)), None)
+        if value.type == POSE:
+            at, (w, x, y, z) = parts_of(value)
+            return PoseTarget(_metres(at), (x, y, z, w))
+        if statement.kind == "LIN":
+            raise fail("IRL590", self._source, expression.span, what="LIN to a joint target")
+        return JointTarget(self._joint_values(value.values[0] if value.type == joint else value))
+
+    def _law(self, statement: tree.Move) -> MotionLaw:
+        given = {param.name.key: param.value for param in statement.params}
+
+        def real(param: str) -> float:
+            expression = given.get(param)
+            if expression is not None:
+                return self._positive(param.upper(), self._evaluator.number(expression), expression)
+            variable = self._scope.variables[MOVE_PARAMS[param].casefold()]
+            if not isinstance(variable.value, float) or not is_set(variable.value):
+                raise TypeError("system variables are numbers")
+            return self._positive(variable.name, variable.value, statement)
+
+        duration = None
+        if "time" in given:
+            duration = self._positive("TIME", self._evaluator.number(given["time"]), given["time"])
+        return MotionLaw(
+            speed=real("speed") * 1e-3,
+            acc=real("acc") * 1e-3,
+            speed_ori=radians(real("speed_ori")),
+            acc_ori=radians(real("acc_ori")),
+            speed_ptp=self._share("speed_ptp", real("speed_ptp"), given.get("speed_ptp", statement)),
+            acc_ptp=self._share("acc_ptp", real("acc_ptp"), given.get("acc_ptp", statement)),
+            duration=duration,
+        )
+
+    def _positive(self, name: str, value: float, node: tree.Node) -> float:
+        if not value > 0.0:
+            data = {"param": name, "expected": "greater than 0", "value": f"{value:g}"}
+            raise fail("IRL505", self._source, node.span, **data)
+        return value
+
+    def _share(self, name: str, percent: float, node: tree.Node) -> float:
+        if percent > 100.0:
+            data = {"param": name.upper(), "expected": "at most 100 %", "value": f"{percent:g}"}
+            raise fail("IRL505", self._source, node.span, **data)
+        return percent / 100.0
+
+
+def _metres(vector: Vector) -> Vector:
+    return (vector[0] * 1e-3, vector[1] * 1e-3, vector[2] * 1e-3)
+
+
+def _part_type(variable: Variable, steps: list[int]) -> Type:
+    """Type of the part of a variable that `steps` lead to."""
+    type = variable.type
+    for step in steps:
+        type = type.fields[step][1] if isinstance(type, Record) else type.element  # type: ignore[union-attr]
+    return type

@@ -1,0 +1,1 @@
+"""The language: source text to typed tree, symbols and diagnostics."""

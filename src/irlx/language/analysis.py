@@ -1,0 +1,110 @@
+"""The front end as one function: text in, tree, symbols and diagnostics out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import TypeAlias
+
+from irlx.diagnostics import Diagnostic, Place, SourceText, Span, report
+from irlx.diagnostics.diagnostic import near_matches
+from irlx.language import tree
+from irlx.language.moves import check_move
+from irlx.language.names import check_names
+from irlx.language.parser import parse
+from irlx.language.scope import Scope
+from irlx.language.switches import check_freeze, check_switches
+from irlx.language.symbols import Symbol
+
+__all__ = ["Analysis", "Resolver", "analyse"]
+
+Resolver: TypeAlias = "Callable[[str], Analysis | None]"
+"""Gives the analysis of a module by the name that FROM uses, or None where there is no such module."""
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """What a text means, as far as it could be understood.
+
+    `tree` is partial after a mistake and None where nothing is left; `symbols` are the program's own
+    declarations by casefolded name, `types` the types among them; `comments` are in the order of the text.
+    """
+
+    source: SourceText
+    tree: tree.Program | tree.Module | None
+    diagnostics: tuple[Diagnostic, ...]
+    comments: tuple[Span, ...]
+    symbols: Mapping[str, Symbol] = field(default_factory=dict)
+    types: Mapping[str, Symbol] = field(default_factory=dict)
+
+    @property
+    def has_errors(self) -> bool:
+        """Whether the program cannot be used."""
+        return any(diagnostic.is_error for diagnostic in self.diagnostics)
+
+
+def analyse(source: SourceText, resolver: Resolver | None = None) -> Analysis:
+    """Parse and check a text; never raises for what a text may hold.
+
+    Without a `resolver` imported names are taken as declared and modules are not looked at.
+    """
+    parsed = parse(source)
+    if parsed.tree is None:
+        return Analysis(source, None, _in_order(parsed.findings), parsed.comments)
+    scope, findings = check_names(parsed.tree, source, complete=parsed.complete)
+    findings += _static_findings(parsed.tree, source)
+    if resolver is not None:
+        findings += _import_findings(parsed.tree, scope, resolver)
+    if parsed.complete and isinstance(parsed.tree, tree.Program):
+        findings += check_switches(parsed.tree, source)
+    return Analysis(
+        source,
+        parsed.tree,
+        _in_order((*parsed.findings, *findings)),
+        parsed.comments,
+        MappingProxyType(scope.values),
+        MappingProxyType(scope.types),
+    )
+
+
+def _in_order(findings: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
+    return tuple(sorted(findings, key=lambda d: d.place.span.start if d.place and d.place.span else 0))
+
+
+def _static_findings(root: tree.Node, source: SourceText) -> list[Diagnostic]:
+    findings = []
+    for node in tree.walk(root):
+        if isinstance(node, tree.Move):
+            findings += check_move(node, source)
+        elif isinstance(node, tree.FreezeStart):
+            findings += check_freeze(node, source)
+    return findings
+
+
+def _import_findings(root: tree.Program | tree.Module, scope: Scope, resolver: Resolver) -> list[Diagnostic]:
+    findings = []
+    for declaration in root.declarations:
+        if not isinstance(declaration, tree.ImportFrom) or not declaration.module.key:
+            continue
+        module = resolver(declaration.module.name)
+        if module is None:
+            place = Place.in_text(scope.source, declaration.module.span)
+            findings.append(report("IRL218", place, module=declaration.module.name))
+        elif isinstance(module.tree, tree.Module):
+            findings += _missing_exports(declaration, module, module.tree, scope.source)
+    return findings
+
+
+def _missing_exports(
+    declaration: tree.ImportFrom, module: Analysis, root: tree.Module, source: SourceText
+) -> list[Diagnostic]:
+    exports = [name for d in root.declarations if isinstance(d, tree.Export) for name in d.names]
+    keys = {name.key for name in exports}
+    findings = []
+    for name in declaration.names:
+        if name.key not in keys:
+            near = near_matches(name.name, [export.name for export in exports])
+            place = Place.in_text(source, name.span)
+            findings.append(report("IRL219", place, name=name.name, file=module.source.name, near=near))
+    return findings

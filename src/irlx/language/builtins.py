@@ -1,0 +1,59 @@
+"""Names that every program knows: types, functions, procedures, system variables, motion parameters."""
+
+from __future__ import annotations
+
+__all__ = [
+    "FUNCTIONS",
+    "MOVE_PARAMETERS",
+    "PROCEDURES",
+    "SYSTEM_VARIABLES",
+    "TYPES",
+    "is_port_name",
+]
+
+import re
+
+
+def _table(words: str) -> dict[str, str]:
+    return {word.casefold(): word for word in words.split()}
+
+
+TYPES = _table(
+    "INT INTEGER REAL CHAR CHARACTER STRING BOOL BOOLEAN FILE SEMAPHORE SIGNAL"
+    " POSITION ORIENTATION POSE MAIN_JOINT ADD_JOINT JOINT ROBTARGET"
+    " MAIN_JOINT_MIN MAIN_JOINT_MAX MAIN_JOINT_SPEED_MIN MAIN_JOINT_SPEED_MAX"
+    " MAIN_JOINT_ACCEL_MIN MAIN_JOINT_ACCEL_MAX"
+)
+"""Predefined types, casefolded name to spelling."""
+
+FUNCTIONS = _table(
+    "POSITION ORIENTATION POSE ROBTARGET JOINT MAIN_JOINT ADD_JOINT"
+    " ORIQUAT ORIVANG ORIMAT ORIRS ORIXYZ ORIYXZ ORIZYX ORIZYZ2"
+    " QUATA QUATB QUATC QUATD ROTANGLE ROTAXIS VECTORN VECTORO VECTORA ANGLEX ANGLEY ANGLEZ"
+    " INV CROSS DOT NORM ABS SQRT SIN COS TAN ASIN ACOS ATAN ATAN2 EXP LN ROUND TRUNC FLOAT ORD CHR LEN"
+    " DISTANCE FK IK MANIPULABILITY CLEARANCE POSTURE"
+)
+"""Predefined functions and constructors, casefolded name to spelling."""
+
+PROCEDURES = _table("OPEN CLOSE READ WRITE WRITELN")
+"""Predefined procedures, casefolded name to spelling."""
+
+MOVE_PARAMETERS = _table(
+    "SPEED ACC TIME SPEED_ORI ACC_ORI SPEED_PTP ACC_PTP JERK C_CP C_PTP C_PASS PROFILE OVERRIDE ANGLE"
+)
+"""Parameters of MOVE, casefolded name to spelling."""
+
+SYSTEM_VARIABLES = _table(
+    "R_BASE R_TOOL R_ROBTARGET_ACT R_JOINT_ACT R_MOVE_TIME R_DISTANCE_FORW R_DISTANCE_BACK R_JBD R_WEIGHTS"
+) | _table(
+    "R_SPEED R_ACC R_SPEED_ORI R_ACC_ORI R_SPEED_PTP R_ACC_PTP R_JERK R_C_CP R_C_PTP R_C_PASS"
+    " R_PROFILE R_OVERRIDE"
+)
+"""System variables and defaults of the motion parameters, casefolded name to spelling."""
+
+_PORT = re.compile(r"a?(in|out)_[0-9]+")
+
+
+def is_port_name(key: str) -> bool:
+    """Whether a casefolded name is that of a port, such as ``out_3``, usable without a declaration."""
+    return _PORT.fullmatch(key) is not None

@@ -1,0 +1,73 @@
+"""What the text of a MOVE tells: order of its parts, number of targets, options that do not fit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from irlx.diagnostics import Diagnostic, Place, SourceText, Span, report
+from irlx.language import tree
+
+__all__ = ["check_move"]
+
+
+def check_move(move: tree.Move, source: SourceText) -> list[Diagnostic]:
+    """Findings on one MOVE."""
+    found = [*_order(move), *_kind(move), *_reconfigurations(move)]
+    return [report(code, Place.in_text(source, span), **data) for code, span, data in found]
+
+
+def _order(move: tree.Move) -> Iterator[tuple[str, Span, dict[str, Any]]]:
+    """Targets come first, then parameters, then clauses; the first offender is enough."""
+    firsts = [part[0].span.start for part in (move.params, move.clauses) if part]
+    for target in move.targets:
+        if any(target.span.start > first for first in firsts):
+            yield "IRL114", target.span, {"item": "this target"}
+            return
+    clause_start = move.clauses[0].span.start if move.clauses else None
+    for param in move.params:
+        if clause_start is not None and param.span.start > clause_start:
+            yield "IRL114", param.span, {"item": f"'{param.name.name}'"}
+            return
+
+
+def _kind(move: tree.Move) -> Iterator[tuple[str, Span, dict[str, Any]]]:
+    if move.path and move.kind not in ("LIN", "SPLINE"):
+        yield "IRL401", move.span, {"kind": move.kind}
+    if move.kind == "SPLINE" and not move.path:
+        yield "IRL402", move.span, {}
+    if move.kind == "CIRCLE" and not move.path and len(move.targets) % 2:
+        yield "IRL403", move.span, {"count": len(move.targets)}
+    for param in move.params:
+        if param.name.key == "angle" and move.kind != "CIRCLE":
+            yield "IRL404", param.span, {"kind": move.kind}
+
+
+def _reconfigurations(move: tree.Move) -> Iterator[tuple[str, Span, dict[str, Any]]]:
+    seen: set[object] = set()
+    for clause in move.clauses:
+        kind = _clause_kind(clause)
+        if kind in seen:
+            yield "IRL406", clause.span, {"clause": kind}
+        seen.add(kind)
+        if not isinstance(clause, tree.WithReconfiguration):
+            continue
+        # A PATH may take both lists from array variables, whose lengths the text does not tell.
+        listed = not move.path or (len(move.targets) > 1 and len(clause.targets) > 1)
+        counts = {len(move.targets), len(move.targets) // 2 if move.kind == "CIRCLE" else len(move.targets)}
+        if listed and len(clause.targets) not in counts:
+            data = {"targets": len(move.targets), "postures": len(clause.targets)}
+            yield "IRL405", clause.span, data
+
+
+def _clause_kind(clause: tree.WithClause) -> str:
+    match clause:
+        case tree.WithLimit(kind=kind):
+            words = {"POSITION": "JOINTLIMIT", "SPEED": "JOINTSPEEDLIMIT", "ACCELERATION": "JOINTACCELLIMIT"}
+            return words[kind]
+        case tree.WithReconfiguration():
+            return "RECONFIGURATION"
+        case tree.WithCriterion(name=name):
+            return f"CRITERION {name.name}"
+        case tree.WithTolerance():
+            return "TOLERANCE"

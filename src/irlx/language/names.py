@@ -1,0 +1,176 @@
+"""The scope pass: unknown and duplicate names, wrong assignments, labels."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from irlx.diagnostics import Diagnostic, Place, SourceText, Span, report
+from irlx.diagnostics.diagnostic import near_matches
+from irlx.language import tree
+from irlx.language.builtins import (
+    FUNCTIONS,
+    MOVE_PARAMETERS,
+    PROCEDURES,
+    SYSTEM_VARIABLES,
+    TYPES,
+    is_port_name,
+)
+from irlx.language.labels import check_jumps
+from irlx.language.scope import Scope
+from irlx.language.symbols import Routine, declared_symbols, parameter_symbols
+
+__all__ = ["NamePass", "check_names"]
+
+_READ_ONLY = {"constant": "a constant", "input": "an input"}
+_NOT_SET = {"procedure": "a procedure", "function": "a function", "robot": "a robot"}
+
+
+def check_names(
+    root: tree.Program | tree.Module, source: SourceText, *, complete: bool
+) -> tuple[Scope, list[Diagnostic]]:
+    """Scope of a program or module and the findings on its names.
+
+    Without `complete`, unknown names prove nothing, because their declarations may have been dropped.
+    """
+    datalist = any(isinstance(d, tree.ImportDatalist) for d in root.declarations)
+    scope = Scope(source, open=datalist or not complete)
+    names = NamePass(scope, complete=complete)
+    names.declarations(root.declarations)
+    if isinstance(root, tree.Program):
+        names.body(root.body)
+    return scope, names.findings
+
+
+class NamePass:
+    """Checks the names of one scope; routines get a pass of their own."""
+
+    def __init__(self, scope: Scope, reported: set[str] | None = None, *, complete: bool) -> None:
+        self.scope = scope
+        self._complete = complete
+        self.findings: list[Diagnostic] = []
+        self._reported: set[str] = set() if reported is None else reported
+
+    def declarations(self, declarations: Sequence[tree.Declaration]) -> None:
+        """Declare everything, then look at what the declarations use."""
+        self.findings += self.scope.declare(declared_symbols(declarations))
+        for declaration in declarations:
+            if isinstance(declaration, (tree.ProcedureDeclaration, tree.FunctionDeclaration)):
+                self._routine(declaration)
+            elif isinstance(declaration, tree.Export):
+                self._exported(declaration)
+            else:
+                self._uses(declaration)
+
+    def body(self, body: Sequence[tree.Statement]) -> None:
+        """Look at the names that statements use."""
+        self._uses(*body)
+        if self._complete:
+            self.findings += check_jumps(body, self.scope.source)
+
+    def _routine(self, routine: Routine) -> None:
+        inner = NamePass(Scope(self.scope.source, self.scope), self._reported, complete=self._complete)
+        inner.findings += inner.scope.declare(parameter_symbols(routine))
+        for parameter in routine.parameters:
+            inner._uses(parameter.type)
+        if isinstance(routine, tree.FunctionDeclaration):
+            inner._uses(routine.result)
+        inner.declarations(routine.declarations)
+        inner.body(routine.body)
+        self.findings += inner.findings
+
+    def _exported(self, export: tree.Export) -> None:
+        for name in export.names:
+            if self.scope.value(name.key) is None and self.scope.type(name.key) is None:
+                self._unknown("IRL201", name, [*self.scope.known_values(), *self.scope.known_types()])
+
+    def _uses(self, *roots: tree.Node) -> None:
+        for node in tree.walk(*roots):
+            check = _CHECKS.get(type(node))
+            if check is not None:
+                check(self, node)
+
+    def _named_type(self, node: tree.NamedType) -> None:
+        key = node.name.key
+        if key not in TYPES and self.scope.type(key) is None:
+            self._unknown("IRL204", node.name, self.scope.known_types())
+
+    def _record(self, node: tree.RecordType) -> None:
+        first: dict[str, tree.Name] = {}
+        for group in node.groups:
+            for name in group.names:
+                if name.key in first:
+                    self._add("IRL214", name.span, name=name.name)
+                first.setdefault(name.key, name)
+
+    def _designator(self, node: tree.Designator) -> None:
+        name = node.base
+        if name.key in SYSTEM_VARIABLES or self.scope.value(name.key) is not None:
+            return
+        if is_port_name(name.key):
+            if name.key not in self._reported:
+                self._reported.add(name.key)
+                self._add("IRL205", name.span, name=name.name)
+            return
+        self._unknown("IRL201", name, self.scope.known_values())
+
+    def _function_call(self, node: tree.FunctionCall) -> None:
+        key = node.name.key
+        # `POSE(..)` stays the constructor where a variable is called pose.
+        if key in FUNCTIONS or key in TYPES or self.scope.type(key) is not None:
+            return
+        symbol = self.scope.value(key)
+        if symbol is None:
+            self._unknown("IRL206", node.name, self.scope.known_functions())
+        elif symbol.kind in ("variable", "constant", "parameter", "input", "output"):
+            self._add("IRL209", node.name.span, name=node.name.name)
+
+    def _call(self, node: tree.Call) -> None:
+        symbol = self.scope.value(node.name.key)
+        if symbol is None and node.name.key not in PROCEDURES:
+            self._unknown("IRL207", node.name, self.scope.known_procedures())
+
+    def _move(self, node: tree.Move) -> None:
+        first: set[str] = set()
+        for param in node.params:
+            key = param.name.key
+            if key and key not in MOVE_PARAMETERS:
+                near = near_matches(param.name.name, list(MOVE_PARAMETERS.values()))
+                self._add("IRL203", param.name.span, name=param.name.name, near=near)
+            elif key in first:
+                self._add("IRL212", param.name.span, name=param.name.name)
+            first.add(key)
+
+    def _assignment(self, node: tree.Assignment) -> None:
+        self._is_settable(node.target)
+
+    def _for(self, node: tree.For) -> None:
+        self._is_settable(node.variable)
+
+    def _is_settable(self, target: tree.Designator) -> None:
+        symbol = self.scope.value(target.base.key)
+        kind = symbol.kind if symbol is not None else ""
+        words = _READ_ONLY.get(kind) or _NOT_SET.get(kind)
+        if words:
+            self._add("IRL211", target.base.span, name=target.base.name, kind=words)
+
+    def _unknown(self, code: str, name: tree.Name, known: list[str]) -> None:
+        if not name.key or self.scope.open or name.key in self._reported:
+            return
+        self._reported.add(name.key)
+        self._add(code, name.span, name=name.name, near=near_matches(name.name, known))
+
+    def _add(self, code: str, span: Span, **data: Any) -> None:
+        self.findings.append(report(code, Place.in_text(self.scope.source, span), **data))
+
+
+_CHECKS: dict[type[tree.Node], Any] = {
+    tree.NamedType: NamePass._named_type,
+    tree.RecordType: NamePass._record,
+    tree.Designator: NamePass._designator,
+    tree.FunctionCall: NamePass._function_call,
+    tree.Call: NamePass._call,
+    tree.Move: NamePass._move,
+    tree.Assignment: NamePass._assignment,
+    tree.For: NamePass._for,
+}

@@ -1,0 +1,1 @@
+"""From tokens to a tree: the LALR machine and its recovery from mistakes."""

@@ -1,0 +1,148 @@
+"""Says why a move cannot go on: where on the path, which joints hold it back, what is missing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irlx.diagnostics import Diagnostic, Place, report
+from irlx.pacing.row_check import BrokenBound
+from irlx.pacing.walk import Halt
+from irlx.robot.description import RobotDescription
+from irlx.robot.kinematics import Kinematics
+from irlx.robot.limits import JointLimits
+from irlx.transform.nearest import scaled_singular_values
+from irlx.transform.posture_search import Shortfall, shortfall
+from irlx.transform.step_bounds import BoundSource
+
+Array = NDArray[np.float64]
+
+_AT_BOUND = 1e-6
+_LIMIT_NAMES = {
+    BoundSource.POSITION: "position",
+    BoundSource.SPEED: "speed",
+    BoundSource.ACCELERATION: "acceleration",
+    BoundSource.BRAKING: "position (braking before it)",
+}
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """What the diagnosis needs to know of the move: robot, limits in force, free joints, the tick."""
+
+    kinematics: Kinematics
+    limits: JointLimits
+    free: NDArray[np.bool_]
+    dt: float
+
+
+def joint_value(robot: RobotDescription, joint: int, value: float, per: str = "") -> str:
+    """Joint value in people's units: rad -> deg, m -> mm; `per` is '', '/s' or '/s2'."""
+    prismatic = robot.axes[joint].is_prismatic
+    return f"{value * 1000.0:.6g} mm{per}" if prismatic else f"{np.degrees(value):.6g} deg{per}"
+
+
+def explain_halt(
+    halt: Halt, around: Surroundings, length: float, goal: Shortfall | None, place: Place
+) -> Diagnostic:
+    """Diagnostic of a tick that no joint step can do (IRL520: bounds, IRL521: out of reach)."""
+    robot = around.kinematics.description
+    solution = halt.solution
+    _, jacobian = around.kinematics.difference(
+        solution.q, around.kinematics.target(halt.demand.rotation, halt.demand.position)
+    )
+    sigma = float(scaled_singular_values(jacobian[:, around.free], robot.reach)[-1])
+    unit, scale = ("deg", np.degrees(1.0)) if length <= np.pi and _only_turns(halt) else ("mm", 1000.0)
+    held = _held_joints(halt, around)
+    data: dict[str, Any] = {
+        "tick": halt.demand.tick,
+        "way": f"{halt.demand.s * scale:.6g}",
+        "length": f"{length * scale:.6g} {unit}",
+        "held": "; ".join(held) if held else _nearest_to_limit(solution.q, around),
+        "sigma": f"{sigma:.2g}",
+        "missing": _missing(solution.twist, goal),
+    }
+    return report("IRL520" if held else "IRL521", place, **data)
+
+
+def _only_turns(halt: Halt) -> bool:
+    return float(np.linalg.norm(halt.demand.twist[:3])) == 0.0
+
+
+def _missing(twist: Array, goal: Shortfall | None) -> str:
+    if goal is not None and (goal.distance > _AT_BOUND or goal.angle > _AT_BOUND):
+        return (
+            "the target itself is out of reach: the nearest posture found within the limits leaves "
+            f"{goal.distance * 1000.0:.4g} mm and {np.degrees(goal.angle):.4g} deg"
+        )
+    distance, angle = (float(np.linalg.norm(part)) for part in (twist[:3], twist[3:]))
+    return (
+        f"at this tick {distance * 1000.0:.3g} mm and {np.degrees(angle):.3g} deg are missing; "
+        "the target itself can be reached in some posture"
+    )
+
+
+def _held_joints(halt: Halt, around: Surroundings) -> list[str]:
+    """Words for every joint that stands on a bound of its step, its limit named."""
+    robot, bounds, solution = around.kinematics.description, halt.bounds, halt.solution
+    words = []
+    for joint in range(len(robot.axes)):
+        name = robot.axes[joint].name
+        if not around.free[joint]:
+            continue
+        if bounds.lower[joint] > bounds.upper[joint]:
+            low, high = (
+                _LIMIT_NAMES[BoundSource(s[joint])] for s in (bounds.lower_source, bounds.upper_source)
+            )
+            words.append(f"{name} cannot keep its {low} and its {high} limit at once")
+        elif solution.active[joint]:
+            upper = bool(solution.active[joint] > 0)
+            source = BoundSource((bounds.upper_source if upper else bounds.lower_source)[joint])
+            words.append(f"{name} is at its {_limit(joint, source, upper, around)}")
+    return words
+
+
+def _limit(joint: int, source: BoundSource, upper: bool, around: Surroundings) -> str:
+    side = "upper" if upper else "lower"
+    kind = {BoundSource.SPEED: "speed", BoundSource.ACCELERATION: "acceleration"}.get(source, "position")
+    per = {"speed": "/s", "acceleration": "/s2"}.get(kind, "")
+    value = around.limits.pair(kind)[1 if upper else 0][joint]
+    return (
+        f"{side} {_LIMIT_NAMES[source]} limit {joint_value(around.kinematics.description, joint, value, per)}"
+    )
+
+
+def _nearest_to_limit(q: Array, around: Surroundings) -> str:
+    """Words for a posture in which no joint stands on a limit: the one that is nearest to one."""
+    robot = around.kinematics.description
+    room = np.minimum(q - around.limits.position_lower, around.limits.position_upper - q)
+    room = np.where(around.free, room, np.inf)
+    joint = int(np.argmin(room))
+    if not np.isfinite(room[joint]):
+        return "no joint stands on a limit"
+    left = joint_value(robot, joint, float(room[joint]))
+    return f"no joint stands on a limit; nearest to one is {robot.axes[joint].name} with {left} left"
+
+
+def explain_broken_row(
+    broken: BrokenBound, first_tick: int, robot: RobotDescription, place: Place
+) -> Diagnostic:
+    """Diagnostic of rows that would break a bound by differences (IRL523)."""
+    per = {"SPEED": "/s", "ACCELERATION": "/s2"}.get(broken.kind.value, "")
+    return report(
+        "IRL523",
+        place,
+        joint=robot.axes[broken.joint].name,
+        kind=broken.kind.value.lower(),
+        value=joint_value(robot, broken.joint, broken.value, per),
+        bound=joint_value(robot, broken.joint, broken.bound, per),
+        tick=first_tick + broken.row,
+    )
+
+
+def goal_shortfall(around: Surroundings, rotation: Array, position: Array, q: Array) -> Shortfall:
+    """How near the tool can come to a goal pose within the limits, from any of several starts."""
+    return shortfall(around.kinematics, rotation, position, q, around.limits, around.free)

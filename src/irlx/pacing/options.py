@@ -1,0 +1,82 @@
+"""Which redundancy options are in force, and the joint limits that follow from them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irlx.blocks import (
+    CyclicBlock,
+    FreezeBlock,
+    JointRange,
+    LimitClause,
+    LimitKind,
+    LimitSwitchBlock,
+    Origin,
+)
+from irlx.robot.limits import JointLimits
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Options:
+    """State of all switches between two blocks.
+
+    `limits` maps a kind to its switch; `frozen` and `frozen_by` the joints held (numbers from 1) and
+    the switch; `cyclic_posture` (n,) the posture that CYCLICSTART stored, None while it is off.
+    """
+
+    limits: dict[LimitKind, LimitSwitchBlock] = field(default_factory=dict)
+    frozen: tuple[int, ...] = ()
+    frozen_by: FreezeBlock | None = None
+    cyclic_posture: Array | None = None
+
+    def after(self, block: LimitSwitchBlock | FreezeBlock | CyclicBlock, q: Array) -> Options:
+        """Options once `block` has executed at posture q (n,). A switch of the same kind is replaced."""
+        if isinstance(block, FreezeBlock):
+            return replace(self, frozen=block.joints, frozen_by=block if block.joints else None)
+        if isinstance(block, CyclicBlock):
+            return replace(self, cyclic_posture=q.copy() if block.active else None)
+        limits = {kind: switch for kind, switch in self.limits.items() if kind is not block.kind}
+        if block.range is not None:
+            limits[block.kind] = block
+        return replace(self, limits=limits)
+
+    def free_joints(self, joints: int) -> NDArray[np.bool_]:
+        """True for every joint that is not frozen, shape (n,)."""
+        free = np.ones(joints, dtype=bool)
+        free[[number - 1 for number in self.frozen]] = False
+        return free
+
+
+@dataclass(frozen=True)
+class LimitsInForce:
+    """The joint limits of one move, and for each kind the clause or switch that narrowed them."""
+
+    limits: JointLimits
+    asked_by: dict[LimitKind, Origin]
+
+
+def limits_in_force(
+    robot: JointLimits, options: Options, clauses: Iterable[LimitClause] = ()
+) -> LimitsInForce:
+    """Limits of a move: the robot's, narrowed by its clause or else the switch of each kind.
+
+    A program can only narrow what the robot allows: bounds outside the robot's count as the robot's.
+    """
+    asked: dict[LimitKind, tuple[JointRange, Origin]] = {}
+    for kind, switch in options.limits.items():
+        if switch.range is not None:
+            asked[kind] = (switch.range, switch.origin)
+    for clause in clauses:
+        asked[clause.kind] = (clause.range, clause.origin)
+    limits = robot
+    for kind, (joint_range, _) in asked.items():
+        lower, upper = robot.pair(kind.value.lower())
+        narrowed = np.maximum(lower, joint_range.lower), np.minimum(upper, joint_range.upper)
+        limits = limits.with_pair(kind.value.lower(), *narrowed)
+    return LimitsInForce(limits, {kind: origin for kind, (_, origin) in asked.items()})

@@ -1,0 +1,65 @@
+"""Checks rows by differences before they are emitted: the same figures a verifier will compute."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irlx.blocks import LimitKind
+from irlx.robot.limits import JointLimits
+from irlx.robot.promises import LIMIT_EXCESS, rounding_allowance
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class BrokenBound:
+    """First row (counted from 0) at which a joint (from 0) passes a bound: found and allowed value."""
+
+    row: int
+    joint: int
+    kind: LimitKind
+    value: float
+    bound: float
+
+
+def broken_bound(start: Array, rows: Array, limits: JointLimits, dt: float) -> BrokenBound | None:
+    """First bound that rows (N, n) after rest at `start` (n,) break, or None.
+
+    Speeds and accelerations are backward differences; the last row must be a hold, so that the
+    deceleration into the stop is judged too.
+    """
+    rest = np.vstack([start, start, rows])
+    speeds = np.diff(rest, axis=0) / dt
+    accelerations = np.diff(speeds, axis=0) / dt
+    speed_slack, acceleration_slack = rounding_allowance(rest, dt)
+    found = [
+        _first(LimitKind.POSITION, rows, limits.position_lower, limits.position_upper, 0.0, 0.0),
+        _first(
+            LimitKind.SPEED, speeds[1:], limits.speed_lower, limits.speed_upper, LIMIT_EXCESS, speed_slack
+        ),
+        _first(
+            LimitKind.ACCELERATION,
+            accelerations,
+            limits.acceleration_lower,
+            limits.acceleration_upper,
+            LIMIT_EXCESS,
+            acceleration_slack,
+        ),
+    ]
+    return min((bound for bound in found if bound), key=lambda bound: bound.row, default=None)
+
+
+def _first(
+    kind: LimitKind, values: Array, lower: Array, upper: Array, relative: float, absolute: float
+) -> BrokenBound | None:
+    over = values > upper * (1.0 + relative) + absolute if relative else values > upper
+    under = values < lower * (1.0 + relative) - absolute if relative else values < lower
+    broken = over | under
+    if not np.any(broken):
+        return None
+    row, joint = (int(index) for index in np.argwhere(broken)[0])
+    bound = upper[joint] if over[row, joint] else lower[joint]
+    return BrokenBound(row, joint, kind, float(values[row, joint]), float(bound))

@@ -1,0 +1,38 @@
+"""The rows of one paced motion, and which bound held which joint in them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irlx.blocks import MoveBlock
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class MotionRows:
+    """What a move becomes: rows at consecutive ticks, the last one a hold of the row before it.
+
+    `q` (N, n) rad or m; `tool_position` (N, 3) m and `tool_rotation` (N, 3, 3) of the tool in the
+    world; `path_position_error` (N,) m and `path_orientation_error` (N,) rad against the demanded
+    pose; `active` (N, n): 0, or the sign of the side times (1 + BoundSource) of the bound that holds
+    a joint back; `s` (N,) path parameter of `length`; `iterations` Newton steps in all.
+    """
+
+    block: MoveBlock
+    first_tick: int
+    q: Array
+    tool_position: Array
+    tool_rotation: Array
+    path_position_error: Array
+    path_orientation_error: Array
+    active: NDArray[np.int8]
+    s: Array
+    length: float
+    iterations: int
+
+    def __len__(self) -> int:
+        return int(self.q.shape[0])

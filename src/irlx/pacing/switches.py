@@ -1,0 +1,132 @@
+"""Checks that a limit, a freeze or a target of the program fits the robot as it stands."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irlx.blocks import FreezeBlock, JointRange, LimitClause, LimitKind, LimitSwitchBlock, Origin
+from irlx.diagnostics import Diagnostic, Place, report
+from irlx.pacing.errors import PacingError
+from irlx.pacing.impossible import joint_value
+from irlx.robot.description import RobotDescription
+from irlx.robot.limits import JointLimits
+
+Array = NDArray[np.float64]
+Locate = Callable[[Origin], Place]
+
+TASK_ROWS = 6
+"""Coordinates of the tool pose that every move asks for."""
+
+_PER = {LimitKind.POSITION: "", LimitKind.SPEED: "/s", LimitKind.ACCELERATION: "/s2"}
+_WORDS = {
+    LimitKind.POSITION: "JOINTLIMIT",
+    LimitKind.SPEED: "JOINTSPEEDLIMIT",
+    LimitKind.ACCELERATION: "JOINTACCELLIMIT",
+}
+
+
+def check_limit(
+    limit: LimitSwitchBlock | LimitClause,
+    robot: RobotDescription,
+    limits: JointLimits,
+    q: Array,
+    place: Place,
+) -> list[Diagnostic]:
+    """Warnings of a limit that starts to hold at posture q (n,).
+
+    Raises PacingError: IRL340 lower above upper, IRL342 a speed or acceleration range without zero,
+    IRL345 a joint that stands outside. A bound wider than the robot's is a warning, IRL341.
+    """
+    if limit.range is None:
+        return []
+    errors = _range_errors(limit.kind, limit.range, robot, place)
+    if errors:
+        raise PacingError(errors)
+    own_lower, own_upper = limits.pair(limit.kind.value.lower())
+    lower, upper = np.maximum(own_lower, limit.range.lower), np.minimum(own_upper, limit.range.upper)
+    if limit.kind is LimitKind.POSITION:
+        outside = np.flatnonzero((q < lower) | (q > upper))
+        if outside.size:
+            raise PacingError([_outside(int(joint), q, lower, upper, robot, place) for joint in outside])
+    return _wider(limit.kind, limit.range, robot, limits, place)
+
+
+def _range_errors(
+    kind: LimitKind, joint_range: JointRange, robot: RobotDescription, place: Place
+) -> list[Diagnostic]:
+    errors = []
+    for joint, (lower, upper) in enumerate(zip(joint_range.lower, joint_range.upper, strict=True)):
+        data: dict[str, Any] = {
+            "word": _WORDS[kind],
+            "joint": robot.axes[joint].name,
+            "lower": joint_value(robot, joint, lower, _PER[kind]),
+            "upper": joint_value(robot, joint, upper, _PER[kind]),
+        }
+        if lower > upper:
+            errors.append(report("IRL340", place, **data))
+        elif kind is not LimitKind.POSITION and not lower <= 0.0 <= upper:
+            errors.append(report("IRL342", place, **data))
+    return errors
+
+
+def _outside(
+    joint: int, q: Array, lower: Array, upper: Array, robot: RobotDescription, place: Place
+) -> Diagnostic:
+    side, bound = ("below", lower[joint]) if q[joint] < lower[joint] else ("above", upper[joint])
+    return report(
+        "IRL345",
+        place,
+        joint=robot.axes[joint].name,
+        value=joint_value(robot, joint, q[joint]),
+        side=side,
+        bound=joint_value(robot, joint, bound),
+    )
+
+
+def _wider(
+    kind: LimitKind, joint_range: JointRange, robot: RobotDescription, limits: JointLimits, place: Place
+) -> list[Diagnostic]:
+    own_lower, own_upper = limits.pair(kind.value.lower())
+    # Degrees turned into radians may pass the robot's bound by the last bit; nobody asked for more.
+    slack = 1e-9
+    wider = (np.array(joint_range.lower) < own_lower - slack) | (
+        np.array(joint_range.upper) > own_upper + slack
+    )
+    if not np.any(wider):
+        return []
+    joints = ", ".join(robot.axes[joint].name for joint in np.flatnonzero(wider))
+    return [report("IRL341", place, word=_WORDS[kind], joints=joints)]
+
+
+def check_freeze(block: FreezeBlock, robot: RobotDescription, place: Place) -> None:
+    """Raise PacingError: IRL346 for a joint the robot does not have, IRL347 for too many joints."""
+    joints = len(robot.axes)
+    unknown = [number for number in block.joints if not 1 <= number <= joints]
+    if unknown:
+        raise PacingError(report("IRL346", place, number=unknown[0], joints=joints))
+    frozen, spare = len(set(block.joints)), joints - TASK_ROWS
+    if frozen > spare:
+        raise PacingError(report("IRL347", place, frozen=frozen, joints=joints, spare=spare))
+
+
+def check_joint_target(q: Array, robot: RobotDescription, limits: JointLimits, place: Place) -> None:
+    """Raise PacingError, IRL424, where a joint target lies outside the limits in force."""
+    outside = np.flatnonzero((q < limits.position_lower) | (q > limits.position_upper))
+    if outside.size == 0:
+        return
+    found = [
+        report(
+            "IRL424",
+            place,
+            joint=robot.axes[joint].name,
+            value=joint_value(robot, joint, q[joint]),
+            lower=joint_value(robot, joint, limits.position_lower[joint]),
+            upper=joint_value(robot, joint, limits.position_upper[joint]),
+        )
+        for joint in (int(index) for index in outside)
+    ]
+    raise PacingError(found)

@@ -1,0 +1,228 @@
+"""Where the stages meet: program and cell -> blocks -> paced motion -> joint stream."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from irlx._version import __version__
+from irlx.blocks import Block, HaltBlock, Origin, Question
+from irlx.cell.cell import Cell
+from irlx.cell.load import find_cell, load_cell
+from irlx.diagnostics import Diagnostic, IrlxError, Place, Span, report
+from irlx.interpreter.interpret import interpret
+from irlx.interpreter.setting import Setting
+from irlx.pacing.pacer import Pacer, PacingSetup
+from irlx.pacing.rows import MotionRows
+from irlx.program import Program, load
+from irlx.report.recording import Recording
+from irlx.report.run import Run, RunError, RunInterrupted
+from irlx.robot.kinematics import Kinematics
+from irlx.streams.joint_stream import FORMAT_VERSION, StreamHeader
+from irlx.streams.sample import Sample
+
+PathLike = str | os.PathLike[str]
+Progress = Callable[[Block, float], None]
+"""Called after each block with the block and the simulated time so far, s."""
+
+LEAST_TICK_MS = 0.25
+LONGEST_TICK_MS = 1000.0
+
+
+@dataclass(frozen=True)
+class Job:
+    """A program and the cell it runs in, checked against each other; tick in ns."""
+
+    program: Program
+    cell: Cell
+    tick_ns: int
+
+
+def prepare(program: Program | PathLike, cell: PathLike | None = None, tick_ms: float | None = None) -> Job:
+    """Load what a run needs.
+
+    `cell` None: the file that SYSTEM SPECIFICATION names, else the program's own name with .toml.
+    Raises ProgramError, CellError, or IrlxError with IRL006 for a tick out of range.
+    """
+    if not isinstance(program, Program):
+        program = load(program)
+    loaded = load_cell(cell_path(program, cell))
+    if tick_ms is None:
+        return Job(program, loaded, loaded.tick_ns)
+    if not LEAST_TICK_MS <= tick_ms <= LONGEST_TICK_MS:
+        cause = f"a tick lasts {LEAST_TICK_MS:g} to {LONGEST_TICK_MS:g} ms"
+        raise IrlxError(report("IRL006", value=f"{tick_ms:g}", cause=cause))
+    return Job(program, loaded, round(tick_ms * 1e6))
+
+
+def cell_path(program: Program, given: PathLike | None) -> Path:
+    """Path of the cell file of a program. Raises CellError, IRL609, that lists what was tried."""
+    if given is not None:
+        return Path(given)
+    candidates = []
+    place = None
+    name = program.specification
+    if name is not None:
+        candidates.append(program.path.with_name(f"{name.name}.toml"))
+        place = Place.in_text(program.source, name.span)
+    candidates.append(program.path.with_suffix(".toml"))
+    return find_cell(candidates, place or Place(str(program.path)))
+
+
+def setting_of(cell: Cell) -> Setting:
+    """What the interpreter may know of a cell."""
+    motion = cell.motion
+    defaults = {
+        "R_SPEED": motion.speed,
+        "R_ACC": motion.acc,
+        "R_SPEED_ORI": motion.speed_ori,
+        "R_ACC_ORI": motion.acc_ori,
+        "R_SPEED_PTP": motion.speed_ptp,
+        "R_ACC_PTP": motion.acc_ptp,
+    }
+    poses = {name: (frame.position, frame.quaternion) for name, frame in cell.frames.items()}
+    axes = cell.robot.axes
+    return Setting(cell.robot.joint_names, tuple(axis.is_prismatic for axis in axes), defaults, poses)
+
+
+def blocks(job: Job) -> Iterator[Block]:
+    """Blocks of a program without moving a robot; a posture that it asks for is the start posture."""
+    source = interpret(job.program.tree, job.program.source, setting_of(job.cell))
+    answer = None
+    while True:
+        try:
+            item = source.send(answer)
+        except StopIteration:
+            return
+        answer = None
+        if isinstance(item, Question):
+            answer = tuple(float(value) for value in job.cell.start)
+        else:
+            yield item
+
+
+@dataclass(frozen=True)
+class Executed:
+    """A block, the tick whose row stood when it began, and the rows it became (None for none)."""
+
+    block: Block
+    tick: int
+    rows: MotionRows | None
+
+
+class Execution:
+    """One run in progress: an iterator of executed blocks over one pacer."""
+
+    def __init__(self, job: Job) -> None:
+        self.job = job
+        cell = job.cell
+        setup = PacingSetup(Kinematics(cell.robot), cell.limits, cell.weights, cell.start, job.tick_ns / 1e9)
+        self.kinematics = setup.kinematics
+        self._pacer = Pacer(setup, self._locate)
+
+    def __iter__(self) -> Iterator[Executed]:
+        """Execute the program block by block. Raises IrlxError where it cannot go on."""
+        job, pacer = self.job, self._pacer
+        source = interpret(job.program.tree, job.program.source, setting_of(job.cell))
+        answer = None
+        while True:
+            try:
+                item = source.send(answer)
+            except StopIteration:
+                return
+            answer = None
+            if isinstance(item, Question):
+                answer = pacer.answer(item)
+                continue
+            tick = pacer.tick
+            yield Executed(item, tick, pacer.execute(item))
+            if isinstance(item, HaltBlock):
+                return
+
+    @property
+    def warnings(self) -> list[Diagnostic]:
+        """Warnings of the blocks executed so far."""
+        return self._pacer.warnings
+
+    def _locate(self, origin: Origin) -> Place:
+        return Place.in_text(self.job.program.source, Span(origin.start, origin.end))
+
+
+def header_of(job: Job) -> StreamHeader:
+    """Provenance of the stream of a job; names of files without their folders."""
+    program, cell = job.program, job.cell
+    return StreamHeader(
+        format_version=FORMAT_VERSION,
+        irlx_version=__version__,
+        program_name=program.path.name,
+        program_sha256=program.sha256,
+        cell_name=Path(cell.file).name,
+        robot_name=cell.robot.name,
+        robot_model=cell.model,
+        robot_fingerprint=cell.robot.fingerprint,
+        tip=cell.robot.tip,
+        joint_names=cell.robot.joint_names,
+        joint_units=tuple("m" if axis.is_prismatic else "rad" for axis in cell.robot.axes),
+        tick_ns=job.tick_ns,
+        limits=cell.limits,
+        weights=tuple(float(weight) for weight in cell.weights),
+    )
+
+
+def run(
+    program: Program | PathLike,
+    cell: PathLike | None = None,
+    tick_ms: float | None = None,
+    progress: Progress | None = None,
+) -> Run:
+    """Interpret a program, move its robot, and return the joint stream.
+
+    `cell`: path of the cell file, by default found beside the program; `tick_ms` overrides the
+    cell's tick. Raises ProgramError and CellError before anything moves, RunError (with what was
+    executed until then) once it does, RunInterrupted on Ctrl-C.
+    """
+    job = prepare(program, cell, tick_ms)
+    return execute(job, progress)
+
+
+def execute(job: Job, progress: Progress | None = None) -> Run:
+    """Run a prepared job; see `run`."""
+    recording = Recording(header_of(job), job.cell.start)
+    execution = Execution(job)
+    recording.start_pose(*execution.kinematics.tool_pose(job.cell.start))
+    try:
+        for executed in execution:
+            recording.add(executed.block, executed.tick, executed.rows)
+            if progress is not None:
+                progress(executed.block, recording.duration)
+    except IrlxError as error:
+        known = (*_warnings(job), *execution.warnings)
+        partial = recording.finish(False, (*known, *error.diagnostics))
+        raise RunError((*error.diagnostics, *known), partial) from error
+    except KeyboardInterrupt as interrupt:
+        raise RunInterrupted(recording.finish(False, (*_warnings(job), *execution.warnings))) from interrupt
+    return recording.finish(True, (*_warnings(job), *execution.warnings))
+
+
+def _warnings(job: Job) -> tuple[Diagnostic, ...]:
+    return (*job.program.diagnostics, *job.cell.warnings)
+
+
+def stream(
+    program: Program | PathLike, cell: PathLike | None = None, tick_ms: float | None = None
+) -> Iterator[Sample]:
+    """Samples of a run, one after another, motion by motion as they are asked for.
+
+    The same samples as `run` gives. Iteration may stop at any sample. Raises what `run` raises,
+    IrlxError in place of RunError.
+    """
+    job = prepare(program, cell, tick_ms)
+    recording = Recording(header_of(job), job.cell.start)
+    execution = Execution(job)
+    recording.start_pose(*execution.kinematics.tool_pose(job.cell.start))
+    yield from recording.take_samples()
+    for executed in execution:
+        recording.add(executed.block, executed.tick, executed.rows)
+        yield from recording.take_samples()

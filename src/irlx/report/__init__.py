@@ -1,0 +1,1 @@
+"""What a finished run was like: events and summary, for people and machines."""

@@ -1,0 +1,118 @@
+"""The figures of a finished run."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irlx.report.events import LimitActive
+from irlx.robot.limits import JointLimits
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class LimitUse:
+    """Largest use of one kind of limit: joint, its value (rad | m per s^k), bound, share, and tick."""
+
+    kind: str
+    joint: str
+    value: float
+    bound: float
+    share: float
+    tick: int
+
+
+@dataclass(frozen=True)
+class Closure:
+    """Posture difference over a path whose tool pose ends where it began: worst joint, rad or m."""
+
+    joint: str
+    difference: float
+
+
+@dataclass(frozen=True)
+class Summary:
+    """Figures of a run: durations in s, path errors in m and rad.
+
+    `limit_use` holds, for each kind of limit the robot has, the joint that came nearest to its bound
+    (for positions: the bound on that side of the middle of its range). `closure` is None where the
+    tool does not end where it began.
+    """
+
+    program: str
+    complete: bool
+    duration: float
+    samples: int
+    moves: int
+    path_position_error: float
+    path_orientation_error: float
+    limit_use: tuple[LimitUse, ...]
+    active: tuple[LimitActive, ...]
+    closure: Closure | None
+    iterations_per_tick: float
+
+    def to_plain(self) -> dict[str, object]:
+        """The summary as JSON-able data."""
+        plain = asdict(self)
+        plain["active"] = [event.to_plain() for event in self.active]
+        return plain
+
+
+def limit_uses(
+    q: Array, qd: Array, qdd: Array, limits: JointLimits, joint_names: Sequence[str]
+) -> tuple[LimitUse, ...]:
+    """Largest use of position, speed and acceleration limits by rows (N, n), of the kinds that exist."""
+    middle = 0.5 * (limits.position_lower + limits.position_upper)
+    middle = np.where(np.isfinite(middle), middle, 0.0)
+    found = [
+        _worst("position", q, limits.position_lower, limits.position_upper, middle, joint_names),
+        _worst("speed", qd, limits.speed_lower, limits.speed_upper, np.zeros_like(middle), joint_names),
+        _worst(
+            "acceleration",
+            qdd,
+            limits.acceleration_lower,
+            limits.acceleration_upper,
+            np.zeros_like(middle),
+            joint_names,
+        ),
+    ]
+    return tuple(use for use in found if use is not None)
+
+
+def _worst(
+    kind: str, values: Array, lower: Array, upper: Array, middle: Array, joint_names: Sequence[str]
+) -> LimitUse | None:
+    above = values >= middle
+    room = np.where(above, upper - middle, middle - lower)
+    way = np.abs(values - middle)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        share = np.where(np.isfinite(room), np.where(room > 0.0, way / room, (way > 0.0).astype(float)), 0.0)
+    if not np.any(np.isfinite(lower) | np.isfinite(upper)):
+        return None
+    tick, joint = np.unravel_index(int(np.argmax(share)), share.shape)
+    bound = upper[joint] if above[tick, joint] else lower[joint]
+    return LimitUse(
+        kind,
+        joint_names[int(joint)],
+        float(values[tick, joint]),
+        float(bound),
+        float(share[tick, joint]),
+        int(tick),
+    )
+
+
+def closure(q: Array, tool: Array, joint_names: Sequence[str], tolerance: float) -> Closure | None:
+    """Posture difference of the first and last rows, where their tool poses agree within `tolerance`."""
+    if len(q) < 2 or float(np.linalg.norm(tool[-1, :3] - tool[0, :3])) > tolerance:
+        return None
+    # The angle between two orientations is twice the distance of their quaternions, either sign.
+    alike = min(float(np.linalg.norm(tool[-1, 3:] - s * tool[0, 3:])) for s in (1.0, -1.0))
+    if 2.0 * alike > tolerance:
+        return None
+    difference = np.abs(q[-1] - q[0])
+    joint = int(np.argmax(difference))
+    return Closure(joint_names[joint], float(difference[joint]))

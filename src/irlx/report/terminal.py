@@ -1,0 +1,77 @@
+"""The summary of a run as plain text for a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import degrees
+
+from irlx.report.events import LimitActive
+from irlx.report.summary import LimitUse, Summary
+from irlx.streams.verify import VerifyReport
+
+_LABEL = 12
+_MOST_SPANS = 4
+_PER = {"position": "", "speed": "/s", "acceleration": "/s2"}
+
+
+def summary_text(summary: Summary, joint_units: Sequence[str], joint_names: Sequence[str]) -> str:
+    """Lines of label and figure; joint values in deg or mm."""
+    units = dict(zip(joint_names, joint_units, strict=True))
+    state = "complete" if summary.complete else "INCOMPLETE"
+    lines = [
+        _line("program", f"{summary.program}, {state}: {summary.moves} moves, {summary.samples} samples"),
+        _line("duration", f"{summary.duration:.6g} s"),
+        _line(
+            "path error",
+            f"{summary.path_position_error:.2g} m, {summary.path_orientation_error:.2g} rad at worst",
+        ),
+    ]
+    lines += [_line("limit use", _use(use, units)) for use in summary.limit_use]
+    lines += [_line("at a limit", words) for words in _active(summary.active)]
+    if not summary.active:
+        lines.append(_line("at a limit", "no joint was held by one"))
+    if summary.closure is not None:
+        difference = _value(summary.closure.difference, units[summary.closure.joint])
+        words = f"the postures differ by {difference} at most ({summary.closure.joint})"
+        lines.append(_line("closure", f"the tool ends where it began; {words}"))
+    return "\n".join(lines)
+
+
+def verification_line(name: str, report: VerifyReport) -> str:
+    """One line on a verified file."""
+    if not report.passed:
+        first = report.failed[0]
+        return _line("VERIFY", f"FAILED {name}: {first.name}: {first.text}")
+    made = len(report.checks) - len(report.unchecked)
+    words = f"{name}: {made} checks passed"
+    return _line("verified", words + (f", {len(report.unchecked)} not made" if report.unchecked else ""))
+
+
+def _line(label: str, words: str) -> str:
+    return f"{label:<{_LABEL}}{words}"
+
+
+def _value(value: float, unit: str, per: str = "") -> str:
+    if abs(value) < 1e-6:
+        return f"{value:.2g} {unit}{per}"
+    return f"{degrees(value):.6g} deg{per}" if unit == "rad" else f"{value * 1000.0:.6g} mm{per}"
+
+
+def _use(use: LimitUse, units: dict[str, str]) -> str:
+    value, bound = (_value(v, units[use.joint], _PER[use.kind]) for v in (use.value, use.bound))
+    return f"{use.kind} {100.0 * use.share:.4g} %: {use.joint} {value} of {bound} at tick {use.tick}"
+
+
+def _active(events: Sequence[LimitActive]) -> list[str]:
+    """One line for each joint and bound, with its spans of time."""
+    spans: dict[tuple[str, str, str], list[str]] = {}
+    for event in events:
+        key = (event.joint, event.side, event.kind)
+        spans.setdefault(key, []).append(f"{event.first_time:.6g}-{event.last_time:.6g}")
+    lines = []
+    for (joint, side, kind), times in spans.items():
+        shown = ", ".join(times[:_MOST_SPANS]) + (
+            f" and {len(times) - _MOST_SPANS} more" if len(times) > _MOST_SPANS else ""
+        )
+        lines.append(f"{joint} {side} {kind}: {shown} s")
+    return lines

@@ -1,0 +1,121 @@
+"""What a robot is, as plain data: joints, links, and the chain that moves the tool."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from enum import Enum
+from functools import cached_property
+from math import inf
+
+Vector3 = tuple[float, float, float]
+
+
+class JointKind(str, Enum):
+    """How a joint moves; CONTINUOUS is a revolute joint without position limits."""
+
+    REVOLUTE = "revolute"
+    CONTINUOUS = "continuous"
+    PRISMATIC = "prismatic"
+    FIXED = "fixed"
+
+
+@dataclass(frozen=True)
+class Joint:
+    """One joint of the frame tree.
+
+    `xyz` (m) and `rpy` (rad, fixed axes x, y, z) place the joint frame in the parent link's frame;
+    `axis` is a unit vector in the joint frame; `lower`, `upper` in rad or m; `speed` in rad/s or
+    m/s. Limits that are not known are infinite.
+    """
+
+    name: str
+    kind: JointKind
+    parent: str
+    child: str
+    xyz: Vector3 = (0.0, 0.0, 0.0)
+    rpy: Vector3 = (0.0, 0.0, 0.0)
+    axis: Vector3 = (1.0, 0.0, 0.0)
+    lower: float = -inf
+    upper: float = inf
+    speed: float = inf
+
+    @property
+    def is_prismatic(self) -> bool:
+        """Whether the joint slides (values in m) rather than turns (values in rad)."""
+        return self.kind is JointKind.PRISMATIC
+
+
+@dataclass(frozen=True)
+class Inertial:
+    """Mass (kg), centre of mass and its frame in the link frame (m, rad), inertia about it (kg m2).
+
+    `inertia` is (ixx, ixy, ixz, iyy, iyz, izz).
+    """
+
+    mass: float
+    xyz: Vector3
+    rpy: Vector3
+    inertia: tuple[float, float, float, float, float, float]
+
+
+@dataclass(frozen=True)
+class RobotDescription:
+    """A robot as a tree of links and joints, with the tool frame `tip` that moves address.
+
+    `joints` holds all joints of the tree; those between `root` and `tip` that move and are not
+    `locked` are the robot's axes, in order from the root. `locked` maps a joint name to the value
+    it is held at; moving joints off the chain are held at their locked value or zero.
+    """
+
+    name: str
+    root: str
+    tip: str
+    joints: tuple[Joint, ...]
+    inertials: Mapping[str, Inertial] = field(default_factory=dict)
+    locked: Mapping[str, float] = field(default_factory=dict)
+
+    @cached_property
+    def chain(self) -> tuple[Joint, ...]:
+        """All joints from the root to the tip, fixed and locked ones included."""
+        by_child = {joint.child: joint for joint in self.joints}
+        found: list[Joint] = []
+        link = self.tip
+        while link != self.root:
+            found.append(by_child[link])
+            link = by_child[link].parent
+        return tuple(reversed(found))
+
+    @cached_property
+    def axes(self) -> tuple[Joint, ...]:
+        """The joints that programs move, in the order of MAIN_JOINT's fields."""
+        return tuple(j for j in self.chain if j.kind is not JointKind.FIXED and j.name not in self.locked)
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of the axes in order."""
+        return tuple(joint.name for joint in self.axes)
+
+    @cached_property
+    def reach(self) -> float:
+        """Upper bound of the distance between the first axis and the tool, m, all slides at the far end."""
+        start = self.chain.index(self.axes[0]) + 1 if self.axes else 0
+        total = sum(sum(c * c for c in joint.xyz) ** 0.5 for joint in self.chain[start:])
+        for joint in self.axes:
+            if joint.is_prismatic:
+                stroke = max(abs(joint.lower), abs(joint.upper))
+                total += stroke if stroke != inf else 0.0
+        return total if total > 0.0 else 1.0
+
+    @cached_property
+    def fingerprint(self) -> str:
+        """SHA-256 (hex) of the chain's geometry: two robots that move alike have the same one."""
+        chain = [
+            {**asdict(joint), "lower": None, "upper": None, "speed": None, "kind": joint.kind.value}
+            for joint in self.chain
+        ]
+        locked = {joint.name: self.locked[joint.name] for joint in self.chain if joint.name in self.locked}
+        text = json.dumps({"tip": self.tip, "chain": chain, "locked": locked}, sort_keys=True)
+        return hashlib.sha256(text.encode()).hexdigest()

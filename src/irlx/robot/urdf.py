@@ -1,0 +1,210 @@
+"""URDF text -> `RobotDescription`; geometry of links is left to those who draw or avoid."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from collections.abc import Mapping
+from math import inf, isfinite, sqrt
+
+from irlx.robot.description import Inertial, Joint, JointKind, RobotDescription, Vector3
+
+
+class RobotModelError(ValueError):
+    """A robot model that cannot be used; `subject` names the element, `known` the valid names if any."""
+
+    def __init__(self, message: str, subject: str = "", known: tuple[str, ...] = ()) -> None:
+        self.subject = subject
+        self.known = known
+        super().__init__(message)
+
+
+def read_urdf(
+    text: str, tip: str | None = None, locked: Mapping[str, float] | None = None
+) -> RobotDescription:
+    """Description of the robot in a URDF text.
+
+    `tip` is the link that moves address, by default the only leaf of the tree; `locked` maps joint
+    names to the values (rad or m) they are held at. Raises RobotModelError naming the element.
+    """
+    root_element = _robot_element(text)
+    joints = tuple(_joint(element) for element in root_element.findall("joint"))
+    links = [element.get("name", "") for element in root_element.findall("link")]
+    inertials = {
+        element.get("name", ""): inertial
+        for element in root_element.findall("link")
+        if (inertial := _inertial(element)) is not None
+    }
+    root = _check_tree(links, joints)
+    tip = _choose_tip(tip, links, joints)
+    locked = dict(locked or {})
+    for name in locked:
+        if name not in {joint.name for joint in joints}:
+            known = tuple(joint.name for joint in joints)
+            raise RobotModelError(f"no joint is called '{name}'", name, known)
+    return RobotDescription(root_element.get("name", "robot"), root, tip, joints, inertials, locked)
+
+
+def _robot_element(text: str) -> ET.Element:
+    try:
+        element = ET.fromstring(text)
+    except ET.ParseError as cause:
+        raise RobotModelError(f"it is not well-formed XML: {cause}") from cause
+    if element.tag != "robot":
+        raise RobotModelError(f"its outermost element is <{element.tag}>, a URDF has <robot>", element.tag)
+    return element
+
+
+def _check_tree(links: list[str], joints: tuple[Joint, ...]) -> str:
+    """Name of the root link; raises RobotModelError where links and joints form no tree."""
+    if not links:
+        raise RobotModelError("it has no <link>")
+    for what, names in (("link", links), ("joint", [joint.name for joint in joints])):
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            raise RobotModelError(f"two {what}s are called '{twice[0]}'", twice[0])
+    parent_of: dict[str, str] = {}
+    for joint in joints:
+        for link in (joint.parent, joint.child):
+            if link not in links:
+                message = f"joint '{joint.name}' names a link '{link}' that does not exist"
+                raise RobotModelError(message, joint.name, tuple(links))
+        if joint.child in parent_of:
+            raise RobotModelError(f"link '{joint.child}' is the child of two joints", joint.child)
+        parent_of[joint.child] = joint.parent
+    roots = [link for link in links if link not in parent_of]
+    if len(roots) != 1:
+        found = ", ".join(roots) if roots else "none (the joints form a ring)"
+        raise RobotModelError(f"one link must have no parent; found {found}")
+    reached = {roots[0]}
+    for _ in links:
+        reached |= {joint.child for joint in joints if joint.parent in reached}
+    if len(reached) != len(links):
+        lost = next(link for link in links if link not in reached)
+        raise RobotModelError(f"link '{lost}' hangs in a ring of joints", lost)
+    return roots[0]
+
+
+def _choose_tip(tip: str | None, links: list[str], joints: tuple[Joint, ...]) -> str:
+    if tip is not None:
+        if tip not in links:
+            raise RobotModelError(f"no link is called '{tip}'", tip, tuple(links))
+        return tip
+    parents = {joint.parent for joint in joints}
+    leaves = tuple(link for link in links if link not in parents)
+    if len(leaves) != 1:
+        message = f"it has {len(leaves)} links at an end ({', '.join(leaves)}); say which one is the tip"
+        raise RobotModelError(message, "tip", leaves)
+    return leaves[0]
+
+
+def _joint(element: ET.Element) -> Joint:
+    name = element.get("name", "")
+    if not name:
+        raise RobotModelError("a <joint> has no name")
+    kind_text = element.get("type", "")
+    try:
+        kind = JointKind(kind_text)
+    except ValueError:
+        known = tuple(kind.value for kind in JointKind)
+        message = f"joint '{name}' is of type '{kind_text}'; irlx moves {', '.join(known)}"
+        raise RobotModelError(message, name, known) from None
+    if element.find("mimic") is not None:
+        raise RobotModelError(f"joint '{name}' mimics another one; lock it or leave it out", name)
+    parent, child = (_link_of(element, tag, name) for tag in ("parent", "child"))
+    xyz, rpy = _origin(element, f"joint '{name}'")
+    lower, upper, speed = _joint_limits(element, name, kind)
+    return Joint(name, kind, parent, child, xyz, rpy, _axis(element, name, kind), lower, upper, speed)
+
+
+def _link_of(element: ET.Element, tag: str, name: str) -> str:
+    found = element.find(tag)
+    link = found.get("link") if found is not None else None
+    if not link:
+        raise RobotModelError(f"joint '{name}' has no <{tag} link=\"...\">", name)
+    return link
+
+
+def _origin(element: ET.Element, where: str) -> tuple[Vector3, Vector3]:
+    origin = element.find("origin")
+    if origin is None:
+        return (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    return _vector(origin, "xyz", where), _vector(origin, "rpy", where)
+
+
+def _vector(element: ET.Element, attribute: str, where: str) -> Vector3:
+    words = element.get(attribute, "0 0 0").split()
+    if len(words) != 3:
+        raise RobotModelError(f"{where}: {attribute} needs three numbers, found {len(words)}", where)
+    return (
+        _number(words[0], attribute, where),
+        _number(words[1], attribute, where),
+        _number(words[2], attribute, where),
+    )
+
+
+def _number(word: str, attribute: str, where: str) -> float:
+    try:
+        value = float(word)
+    except ValueError:
+        raise RobotModelError(f"{where}: {attribute} holds '{word}', which is no number", where) from None
+    if not isfinite(value):
+        raise RobotModelError(f"{where}: {attribute} holds '{word}', which is not finite", where)
+    return value
+
+
+def _axis(element: ET.Element, name: str, kind: JointKind) -> Vector3:
+    found = element.find("axis")
+    if found is None or kind is JointKind.FIXED:
+        return (1.0, 0.0, 0.0)
+    x, y, z = _vector(found, "xyz", f"joint '{name}', axis")
+    length = sqrt(x * x + y * y + z * z)
+    if length < 1e-9:
+        raise RobotModelError(f"the axis of joint '{name}' has no direction", name)
+    return (x / length, y / length, z / length)
+
+
+def _joint_limits(element: ET.Element, name: str, kind: JointKind) -> tuple[float, float, float]:
+    found = element.find("limit")
+    where = f"joint '{name}', limit"
+
+    def value(attribute: str, default: float) -> float:
+        word = found.get(attribute) if found is not None else None
+        return default if word is None else _number(word, attribute, where)
+
+    speed = value("velocity", inf)
+    if speed < 0.0:
+        raise RobotModelError(f"{where}: velocity is negative", name)
+    if kind in (JointKind.FIXED, JointKind.CONTINUOUS):
+        return -inf, inf, speed
+    # A URDF limit without a side counts as 0 by the format, but as "not given" it says more to people.
+    lower, upper = value("lower", -inf), value("upper", inf)
+    if lower > upper:
+        raise RobotModelError(f"{where}: lower {lower} is above upper {upper}", name)
+    return lower, upper, speed
+
+
+def _inertial(element: ET.Element) -> Inertial | None:
+    found = element.find("inertial")
+    if found is None:
+        return None
+    where = f"link '{element.get('name', '')}', inertial"
+    xyz, rpy = _origin(found, where)
+    mass = found.find("mass")
+    inertia = found.find("inertia")
+    return Inertial(
+        0.0 if mass is None else _number(mass.get("value", "0"), "mass", where),
+        xyz,
+        rpy,
+        (
+            _moment(inertia, "ixx", where),
+            _moment(inertia, "ixy", where),
+            _moment(inertia, "ixz", where),
+            _moment(inertia, "iyy", where),
+            _moment(inertia, "iyz", where),
+            _moment(inertia, "izz", where),
+        ),
+    )
+
+
+def _moment(element: ET.Element | None, attribute: str, where: str) -> float:
+    return 0.0 if element is None else _number(element.get(attribute, "0"), attribute, where)

@@ -1,0 +1,27 @@
+"""One sample of a joint stream: what `irlx.stream` yields."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Sample:
+    """State at one tick.
+
+    `t` in s; `q`, `qd`, `qdd` (n,) rad | m and per s, s2; `tool` (7,) x y z m and quaternion x y z w;
+    `block` is the id of the move in execution.
+    """
+
+    tick: int
+    t: float
+    q: Array
+    qd: Array
+    qdd: Array
+    tool: Array
+    block: int

@@ -1,0 +1,81 @@
+"""What the checks of one stream share: the stream, the robot, its moves, limits and tool poses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from irlx.blocks import MoveBlock, PoseTarget
+from irlx.robot.description import RobotDescription
+from irlx.streams.joint_stream import Floats, JointStream
+from irlx.streams.verify.forward import forward
+from irlx.streams.verify.limits import LimitsInForce, limits_in_force
+from irlx.streams.verify.moves import MoveRows, moves_of
+from irlx.streams.verify.rotations import from_quaternion
+from irlx.streams.verify.tally import Tally
+
+BASE_FRAME = "R_BASE"
+"""The frame of targets that the verifier can place: the root of the robot."""
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """One stream with everything that follows from it, computed on first use.
+
+    `robot` is None where none was given or where it is not the stream's robot.
+    """
+
+    stream: JointStream
+    robot: RobotDescription | None
+
+    @cached_property
+    def lines(self) -> dict[int, int]:
+        """Program line of every recorded block, by id."""
+        return {record.block.id: record.block.origin.line for record in self.stream.records}
+
+    @cached_property
+    def moves(self) -> list[MoveRows]:
+        """The recorded moves in order."""
+        return moves_of(self.stream)
+
+    @cached_property
+    def limits(self) -> LimitsInForce:
+        """The limits in force at each row."""
+        return limits_in_force(self.stream, self.moves)
+
+    @cached_property
+    def poses(self) -> tuple[Floats, Floats]:
+        """Tool positions (N, 3) and rotations (N, 3, 3) by the verifier's own forward kinematics."""
+        assert self.robot is not None
+        return forward(self.robot, self.stream.q)
+
+    def pose(self, row: int) -> tuple[Floats, Floats]:
+        """Tool position (3,) and rotation (3, 3) of one row."""
+        positions, rotations = self.poses
+        return positions[row], rotations[row]
+
+    def goal(self, move: MoveRows) -> tuple[Floats, Floats] | None:
+        """Pose that a move must reach; None where its target stands in a frame that is not known here."""
+        target = move.block.target
+        if not isinstance(target, PoseTarget):
+            assert self.robot is not None
+            positions, rotations = forward(self.robot, np.array([target.values], dtype=np.float64))
+            return positions[0], rotations[0]
+        if target.frame != BASE_FRAME:
+            return None
+        if target.orientation is None:
+            return np.array(target.position), self.pose(move.start)[1]
+        quaternion = np.array(target.orientation)
+        return np.array(target.position), from_quaternion(quaternion / np.linalg.norm(quaternion))
+
+    def tally(self, name: str, unit: str) -> Tally:
+        """An empty tally for a check of this stream."""
+        return Tally(name, unit, self.stream, self.lines)
+
+    @property
+    def carries_blocks(self) -> bool:
+        """Whether moves are recorded; some formats carry samples only."""
+        recorded = any(isinstance(record.block, MoveBlock) for record in self.stream.records)
+        return recorded or not self.stream.block.any()

@@ -1,0 +1,115 @@
+"""Which rows belong to which move, and whether block records and samples fit together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from irlx.blocks import (
+    Block,
+    FreezeBlock,
+    JointRange,
+    JointTarget,
+    LimitSwitchBlock,
+    MoveBlock,
+    PoseTarget,
+)
+from irlx.streams.joint_stream import Integers, JointStream
+
+
+@dataclass(frozen=True)
+class MoveRows:
+    """Rows ``start + 1 .. last`` of one move; row `start` stands when it begins.
+
+    A move without rows (its target was reached before) has ``last == start``. `finished` is False for
+    the move in which an incomplete stream ends.
+    """
+
+    block: MoveBlock
+    start: int
+    last: int
+    finished: bool
+
+    @property
+    def rows(self) -> Integers:
+        """Indices of the rows of the move, hold rows included."""
+        return np.arange(self.start + 1, self.last + 1)
+
+
+def segments(block: Integers) -> list[tuple[int, int, int]]:
+    """Stretches of equal block ids: (id, first row, last row) in order."""
+    starts = np.flatnonzero(np.diff(block, prepend=block[:1] - 1))
+    ends = np.append(starts[1:], len(block)) - 1
+    return list(zip(block[starts].tolist(), starts.tolist(), ends.tolist(), strict=True))
+
+
+def moves_of(stream: JointStream) -> list[MoveRows]:
+    """The moves of a stream in order; ticks must count from 0 without gaps and records must fit."""
+    places = {identity: (first, last) for identity, first, last in segments(stream.block)}
+    final = len(stream.ticks) - 1
+    moves = []
+    for record in stream.records:
+        if isinstance(record.block, MoveBlock):
+            start = record.tick
+            last = places.get(record.block.id, (start, start))[1]
+            moves.append(MoveRows(record.block, start, last, stream.complete or last != final))
+    return moves
+
+
+def misfit(stream: JointStream) -> tuple[int, str] | None:
+    """Tick and words of the first place where samples and block records contradict each other."""
+    joints, rows = stream.header.joints, len(stream.ticks)
+    begins: dict[int, int] = {}
+    previous = 0
+    for record in stream.records:
+        reason = _wrong_numbers(record.block, joints)
+        if reason:
+            return record.tick, f"block {record.block.id}: {reason}"
+        if record.tick < previous:
+            return record.tick, f"block {record.block.id} begins at tick {record.tick}, out of order"
+        if record.block.id in begins:
+            return record.tick, f"two blocks have the id {record.block.id}"
+        previous = record.tick
+        begins[record.block.id] = record.tick if isinstance(record.block, MoveBlock) else -1
+    if previous >= rows:
+        late = f"a block begins at tick {previous}, but the samples end at {rows - 1}"
+        return _misplaced(segments(stream.block), begins) or (previous, late)
+    return _misplaced(segments(stream.block), begins)
+
+
+def _misplaced(found: list[tuple[int, int, int]], begins: dict[int, int]) -> tuple[int, str] | None:
+    """First stretch of rows that does not begin right after the record of its move."""
+    seen: set[int] = set()
+    for identity, first, _ in found:
+        if first == 0:
+            if identity != 0:
+                return 0, f"the start posture belongs to block {identity}, not to 0"
+        elif begins.get(identity, -1) < 0:
+            return first, f"no recorded move has the id {identity}"
+        elif identity in seen:
+            return first, f"block {identity} comes back after another one"
+        elif begins[identity] + 1 != first:
+            return first, f"block {identity} was recorded at tick {begins[identity]} and begins at {first}"
+        seen.add(identity)
+    return None
+
+
+def _wrong_numbers(block: Block, joints: int) -> str:
+    """Why the numbers in a block do not fit a robot of n joints, or ''."""
+    ranges: list[JointRange] = []
+    if isinstance(block, MoveBlock):
+        ranges = [clause.range for clause in block.limits]
+        if isinstance(block.target, JointTarget) and len(block.target.values) != joints:
+            return f"its target has {len(block.target.values)} values for {joints} joints"
+        if isinstance(block.target, PoseTarget) and block.target.orientation is not None:
+            length = float(np.linalg.norm(block.target.orientation))
+            if not abs(length - 1.0) < 1e-6:
+                return f"its orientation is a quaternion of length {length:.6g}"
+    if isinstance(block, LimitSwitchBlock) and block.range is not None:
+        ranges = [block.range]
+    if any(len(bounds.lower) != joints or len(bounds.upper) != joints for bounds in ranges):
+        return f"its limits are not those of {joints} joints"
+    if isinstance(block, FreezeBlock) and not all(1 <= joint <= joints for joint in block.joints):
+        return f"it freezes a joint outside 1..{joints}"
+    return ""

@@ -1,0 +1,1 @@
+"""What a redundant robot does with its freedom: one criterion a module."""

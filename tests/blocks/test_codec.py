@@ -1,0 +1,107 @@
+import json
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from irlx.blocks import (
+    Block,
+    CyclicBlock,
+    FreezeBlock,
+    HaltBlock,
+    JointRange,
+    JointTarget,
+    LimitClause,
+    LimitKind,
+    LimitSwitchBlock,
+    MotionLaw,
+    MoveBlock,
+    MoveKind,
+    Origin,
+    PoseTarget,
+)
+from irlx.blocks.codec import BLOCK_TYPES, BlockFormError, block_from_plain, block_to_plain
+
+numbers = st.floats(allow_nan=False)
+vectors = st.lists(numbers, max_size=4).map(tuple)
+origins = st.builds(Origin, st.text(), st.integers(0, 9), st.integers(9, 99), st.integers(1, 99))
+ranges = st.builds(JointRange, vectors, vectors)
+kinds = st.sampled_from(LimitKind)
+common = {"id": st.integers(1, 99), "origin": origins, "robot": st.text(), "process": st.text()}
+laws = st.builds(MotionLaw, *[numbers] * 6, st.none() | numbers)
+poses = st.builds(
+    PoseTarget,
+    st.tuples(numbers, numbers, numbers),
+    st.none() | st.tuples(numbers, numbers, numbers, numbers),
+    st.text(),
+)
+blocks = st.one_of(
+    st.builds(HaltBlock, **common),
+    st.builds(FreezeBlock, joints=st.lists(st.integers(1, 9)).map(tuple), **common),
+    st.builds(CyclicBlock, active=st.booleans(), **common),
+    st.builds(LimitSwitchBlock, kind=kinds, range=st.none() | ranges, **common),
+    st.builds(
+        MoveBlock,
+        kind=st.sampled_from(MoveKind),
+        target=poses | st.builds(JointTarget, vectors),
+        law=laws,
+        limits=st.lists(st.builds(LimitClause, kinds, ranges, origins), max_size=2).map(tuple),
+        **common,
+    ),
+)
+
+
+def all_kinds(base: type) -> set[type]:
+    return {base for _ in [0]}.union(*(all_kinds(kind) for kind in base.__subclasses__()))
+
+
+@pytest.mark.req("STR-03")
+@given(blocks)
+def test_blocks_survive_json(block: Block) -> None:
+    text = json.dumps(block_to_plain(block), allow_nan=False)
+    back = block_from_plain(json.loads(text))
+    assert back == block
+    assert repr(back) == repr(block)  # tells -0.0 from 0.0 and 1 from 1.0
+
+
+def test_every_block_is_known() -> None:
+    assert all_kinds(Block) - {Block} == set(BLOCK_TYPES.values())
+
+
+GOOD = block_to_plain(
+    MoveBlock(
+        id=1,
+        origin=Origin("a.irl", 0, 1, 1),
+        kind=MoveKind.LIN,
+        target=PoseTarget((1.0, 2.0, 3.0), None),
+        law=MotionLaw(1.0, 1.0, 1.0, 1.0),
+    )
+)
+
+
+@pytest.mark.parametrize(
+    ("change", "word"),
+    [
+        ({"type": "Nothing"}, "Nothing"),
+        ({"kind": "ARC"}, "kind"),
+        ({"id": "1"}, "id"),
+        ({"id": True}, "id"),
+        ({"extra": 1}, "extra"),
+        ({"target": None}, "target.type"),
+        ({"target": {"type": "PoseTarget"}}, "target.position"),
+        ({"law": {**GOOD["law"], "speed": "fast"}}, "law.speed"),
+        ({"law": {**GOOD["law"], "speed": 10**400}}, "law.speed"),
+        ({"limits": 3}, "limits"),
+        ({"limits": [3]}, "limits.1"),
+    ],
+)
+def test_wrong_forms_name_the_key(change: dict[str, object], word: str) -> None:
+    with pytest.raises(BlockFormError, match=word.replace(".", r"\.")):
+        block_from_plain({**GOOD, **change})
+
+
+def test_missing_fields_and_other_things() -> None:
+    with pytest.raises(BlockFormError, match="law: missing"):
+        block_from_plain({key: value for key, value in GOOD.items() if key != "law"})
+    with pytest.raises(BlockFormError):
+        block_from_plain([])

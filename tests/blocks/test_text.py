@@ -1,0 +1,80 @@
+from math import inf, pi
+
+import pytest
+
+from irlx.blocks import (
+    Block,
+    CyclicBlock,
+    FreezeBlock,
+    HaltBlock,
+    JointRange,
+    JointTarget,
+    LimitClause,
+    LimitKind,
+    LimitSwitchBlock,
+    MotionLaw,
+    MoveBlock,
+    MoveKind,
+    Origin,
+    PoseTarget,
+)
+from irlx.blocks.text import block_text
+
+AT = Origin("a.irl", 0, 1, 20)
+LAW = MotionLaw(1.0, 2.0, pi / 2, pi, 0.5, 1.0)
+UNITS = ("rad", "m")
+RANGE = JointRange((-pi, -inf), (pi / 180, 0.25))
+
+CASES = [
+    (
+        MoveBlock(
+            id=3, origin=AT, kind=MoveKind.LIN, target=PoseTarget((9.5, 1.0, 3.5), (0, 0, 0, 1)), law=LAW
+        ),
+        "3 MOVE LIN to (9500 1000 3500) (0 0 0 1) in R_BASE speed 1000 mm/s acc 2000 mm/s2 "
+        "speed_ori 90 deg/s acc_ori 180 deg/s2 line 20",
+    ),
+    (
+        MoveBlock(
+            id=4,
+            origin=AT,
+            kind=MoveKind.PTP,
+            target=JointTarget((-pi / 2, 0.1)),
+            law=MotionLaw(1.0, 2.0, 1.0, 1.0, 0.5, 1.0, 2.5),
+            limits=(LimitClause(LimitKind.SPEED, RANGE, AT),),
+            robot="left",
+            process="p2",
+        ),
+        "4 MOVE PTP to joints (-90 100) speed_ptp 50 % acc_ptp 100 % time 2.5 s "
+        "WITH JOINTSPEEDLIMIT (-180 -inf) (1 250) robot left process p2 line 20",
+    ),
+    (
+        MoveBlock(
+            id=5, origin=AT, kind=MoveKind.LIN, target=PoseTarget((1.2e-16, -0.0, 1 / 3), None, "f"), law=LAW
+        ),
+        "5 MOVE LIN to (0 0 333.3333333) kept in f speed 1000 mm/s acc 2000 mm/s2 "
+        "speed_ori 90 deg/s acc_ori 180 deg/s2 line 20",
+    ),
+    (
+        LimitSwitchBlock(id=6, origin=AT, kind=LimitKind.POSITION, range=RANGE),
+        "6 JOINTLIMIT (-180 -inf) (1 250) line 20",
+    ),
+    (
+        LimitSwitchBlock(id=7, origin=AT, kind=LimitKind.ACCELERATION, range=None),
+        "7 JOINTACCELLIMITEND line 20",
+    ),
+    (FreezeBlock(id=8, origin=AT, joints=(1, 2)), "8 FREEZESTART 1, 2 line 20"),
+    (FreezeBlock(id=9, origin=AT, joints=()), "9 FREEZEEND line 20"),
+    (CyclicBlock(id=10, origin=AT, active=True), "10 CYCLICSTART line 20"),
+    (CyclicBlock(id=11, origin=AT, active=False), "11 CYCLICEND line 20"),
+    (HaltBlock(id=12, origin=AT), "12 HALT line 20"),
+]
+
+
+@pytest.mark.parametrize(("block", "line"), CASES, ids=[line.split()[1] for _, line in CASES])
+def test_lines(block: Block, line: str) -> None:
+    assert block_text(block, UNITS) == line
+
+
+def test_unknown_block() -> None:
+    with pytest.raises(TypeError, match="Block"):
+        block_text(Block(id=1, origin=AT), UNITS)

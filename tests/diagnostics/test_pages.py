@@ -1,0 +1,122 @@
+"""The pages of the codes: every code has one, and its programs show what it says."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from irlx.diagnostics import CATALOGUE
+from irlx.language.analysis import analyse
+from irlx.language.source import source_text
+
+PAGES = Path(__file__).parents[2] / "docs" / "diagnostics"
+
+# Line, column and message that the bad program of the page gives, and nothing else.
+MESSAGES = {
+    "IRL101": (4, 14, "expected ',' or ')', found ';'"),
+    "IRL102": (4, 14, "missing ';' after the MOVE"),
+    "IRL103": (4, 14, "missing ';' after the CYCLICSTART"),
+    "IRL104": (4, 11, "missing THEN after the condition of IF"),
+    "IRL105": (4, 5, "'=' taken for ':='"),
+    "IRL106": (2, 11, "PATH is a keyword and cannot be a name"),
+    "IRL107": (6, 1, "missing ENDIF for the IF of line 4, found the keyword ENDPROGRAM"),
+    "IRL108": (5, 3, "ENDIF without IF"),
+    "IRL109": (6, 1, "nothing may follow the end of the program, found the name 'x'"),
+    "IRL110": (4, 11, "comment without end"),
+    "IRL111": (3, 11, "text without closing '"),
+    "IRL112": (4, 10, "'–' (U+2013) has no meaning outside texts and comments"),
+    "IRL113": (4, 8, "number outside the range of INT"),
+    "IRL114": (4, 30, "this target stands after WITH or out of order in the MOVE"),
+    "IRL115": (4, 18, "comparisons cannot be chained"),
+    "IRL116": (1, 1, "expected PROGRAM or MODULE at the start, found the keyword BEGIN"),
+    "IRL117": (1, 1, "the file holds no program"),
+    "IRL118": (4, 108, "parentheses nested deeper than 100 levels"),
+    "IRL201": (4, 3, "unknown name 'lenght'; did you mean 'length'?"),
+    "IRL202": (3, 11, "'Count' is declared twice"),
+    "IRL203": (4, 15, "MOVE has no parameter 'SPED'; did you mean 'SPEED' or 'SPEED_PTP' or 'SPEED_ORI'?"),
+    "IRL204": (2, 5, "unknown type 'PSE'; did you mean 'POSE'?"),
+    "IRL205": (3, 3, "port 'OUT_3' is not declared"),
+    "IRL206": (4, 8, "unknown function 'SQR'; did you mean 'SQRT'?"),
+    "IRL207": (6, 3, "unknown procedure 'pck'; did you mean 'pick'?"),
+    "IRL208": (4, 8, "GOTO 'inside' jumps into a structured statement"),
+    "IRL209": (4, 8, "'list' is no function"),
+    "IRL210": (4, 3, "no GOTO uses the label 'again'"),
+    "IRL211": (4, 3, "'limit' is a constant and cannot be set"),
+    "IRL212": (4, 29, "MOVE parameter 'SPEED' is given twice"),
+    "IRL213": (3, 21, "'count' hides a name of the program"),
+    "IRL214": (2, 22, "the record has two fields 'A'"),
+    "IRL215": (4, 8, "unknown label 'finish'; did you mean 'finsh'?"),
+    "IRL217": (3, 3, "EXIT outside of a loop"),
+    "IRL301": (4, 3, "CYCLICSTART is still on at the end of the program"),
+    "IRL302": (5, 3, "FREEZEEND although FREEZESTART is not on"),
+    "IRL303": (5, 3, "FREEZESTART is switched on while it is on; the new values replace the old"),
+    "IRL304": (3, 18, "joint 1 is listed twice"),
+    "IRL305": (3, 15, "there is no joint 0"),
+    "IRL401": (4, 3, "PATH does not go with PTP"),
+    "IRL402": (4, 3, "SPLINE needs PATH"),
+    "IRL403": (4, 3, "CIRCLE needs pairs of via point and end point, found 1 target(s)"),
+    "IRL404": (4, 15, "ANGLE does not go with LIN"),
+    "IRL405": (5, 23, "3 target(s), but 2 posture(s) after RECONFIGURATION"),
+    "IRL406": (4, 49, "WITH TOLERANCE is given twice"),
+}
+MODULE = "MODULE grippers; EXPORT close; PROCEDURE close; BEGIN ENDPROC; ENDMODULE"
+IMPORT_MESSAGES = {
+    "IRL218": (2, 6, "no module 'gripers'"),
+    "IRL219": (2, 22, "grippers.irl does not export 'shut'"),
+}
+
+
+def section(code, title):
+    page = (PAGES / f"{code}.md").read_text(encoding="utf-8")
+    found = re.search(rf"^## {title}\n+```irl\n(.*?)```", page, re.MULTILINE | re.DOTALL)
+    assert found, f"{code} has no program under {title}"
+    return found[1]
+
+
+def told(text, resolver=None):
+    diagnostics = analyse(source_text("p.irl", text), resolver).diagnostics
+    return [(d.code, *d.place.line_and_column, d.message) for d in diagnostics]
+
+
+@pytest.mark.req("LANG-70")
+@pytest.mark.parametrize("code", sorted(CATALOGUE))
+def test_every_code_has_a_page(code):
+    path = PAGES / f"{code}.md"
+    assert path.is_file()
+    page = path.read_text(encoding="utf-8")
+    assert page.startswith(f"# {code}: ")
+    assert ("## Bad\n" in page and "## Repaired\n" in page) or "## Example\n" in page
+
+
+@pytest.mark.req("LANG-70")
+def test_every_page_has_a_code():
+    assert {path.stem for path in PAGES.glob("IRL*.md")} <= set(CATALOGUE)
+
+
+@pytest.mark.req("LANG-70")
+@pytest.mark.req("LANG-71")
+@pytest.mark.parametrize("code", MESSAGES)
+def test_bad_program_gives_the_message(code):
+    assert told(section(code, "Bad")) == [(code, *MESSAGES[code])]
+
+
+@pytest.mark.req("LANG-70")
+@pytest.mark.parametrize("code", MESSAGES)
+def test_repaired_program_is_clean(code):
+    assert told(section(code, "Repaired")) == []
+
+
+def grippers(name):
+    return analyse(source_text("grippers.irl", MODULE)) if name == "grippers" else None
+
+
+@pytest.mark.req("LANG-12")
+@pytest.mark.parametrize("code", IMPORT_MESSAGES)
+def test_imports(code):
+    assert told(section(code, "Bad"), grippers) == [(code, *IMPORT_MESSAGES[code])]
+    assert told(section(code, "Repaired"), grippers) == []
+
+
+def test_language_codes_are_all_covered():
+    ours = {code for code in CATALOGUE if re.match(r"IRL(1\d\d|2[01]\d|3[0-3]\d|4[01]\d)", code)}
+    assert ours == MESSAGES.keys() | IMPORT_MESSAGES.keys() | {"IRL130", "IRL131"}

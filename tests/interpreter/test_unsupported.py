@@ -1,0 +1,162 @@
+"""What is read but not executed: an error where a run meets it, a warning in a check, both with its name."""
+
+import pytest
+
+from irlx.interpreter.support import unsupported
+from irlx.language.analysis import analyse
+from irlx.language.source import source_text
+
+START = "VAR POSITION: p := (1, 2, 3); MAIN_JOINT: j; BOOL: b; INT: i := 1; REAL: x;"
+
+STATEMENTS = [
+    ("pick;", "a procedure call", "pick"),
+    ("WRITE('a');", "a procedure call", "WRITE('a')"),
+    ("RETURN;", "RETURN", "RETURN"),
+    ("GOTO end; end:", "GOTO", "GOTO end"),
+    ("end: i := 1;", "a label", "end:"),
+    ("IF b THEN i := 2; ENDIF;", "IF", "IF b THEN i := 2; ENDIF"),
+    ("CASE i OF WHEN 1: i := 2; ENDCASE;", "CASE", "CASE i OF WHEN 1: i := 2; ENDCASE"),
+    ("FOR i := 1 TO 3 DO x := i; ENDFOR;", "FOR", "FOR i := 1 TO 3 DO x := i; ENDFOR"),
+    ("WHILE b DO i := 2; ENDWHILE;", "WHILE", "WHILE b DO i := 2; ENDWHILE"),
+    ("REPEAT i := 2; UNTIL b;", "REPEAT", "REPEAT i := 2; UNTIL b"),
+    ("PAUSE;", "PAUSE", "PAUSE"),
+    ("WAIT 2 SEC;", "WAIT", "WAIT 2 SEC"),
+    ("WAIT FOR b;", "WAIT FOR", "WAIT FOR b"),
+    ("OBSTACLE ściana;", "OBSTACLE", "OBSTACLE ściana"),
+    ("OBSTACLEEND ściana;", "OBSTACLEEND", "OBSTACLEEND ściana"),
+    ("RECONFIGURATION j;", "RECONFIGURATION", "RECONFIGURATION j"),
+    ("CRITERION damping;", "CRITERION", "CRITERION damping"),
+    ("CRITERIONEND damping;", "CRITERIONEND", "CRITERIONEND damping"),
+    ("MOVE CIRCLE p, p;", "MOVE CIRCLE", "MOVE CIRCLE p, p"),
+    ("MOVE LIN PATH (p, p);", "MOVE LIN PATH", "MOVE LIN PATH (p, p)"),
+    ("MOVE SPLINE PATH (p, p);", "MOVE SPLINE PATH", "MOVE SPLINE PATH (p, p)"),
+    ("MOVE_INC LIN p;", "MOVE_INC", "MOVE_INC LIN p"),
+    ("MOVE LIN p WITH RECONFIGURATION j;", "WITH RECONFIGURATION", "WITH RECONFIGURATION j"),
+    ("MOVE LIN p WITH CRITERION damping;", "WITH CRITERION", "WITH CRITERION damping"),
+    ("MOVE LIN p WITH TOLERANCE (0, 0, 0, 0, 0, 9);", "WITH TOLERANCE", "WITH TOLERANCE (0, 0, 0, 0, 0, 9)"),
+    *(
+        (f"MOVE LIN p {name} := {value};", f"the parameter {name}", f"{name} := {value}")
+        for name, value in [
+            ("JERK", "1"),
+            ("C_CP", "10"),
+            ("C_PTP", "10"),
+            ("C_PASS", "TRUE"),
+            ("PROFILE", "'S_CURVE'"),
+            ("OVERRIDE", "50"),
+        ]
+    ),
+]
+
+DECLARATIONS = [
+    ("FROM tools IMPORT grip;", "FROM .. IMPORT", "FROM tools IMPORT grip"),
+    ("IMPORT DATALIST points;", "IMPORT DATALIST", "IMPORT DATALIST points"),
+    ("CONST INT: k := 1; EXPORT k;", "EXPORT", "EXPORT k"),
+    ("ROBOT r := left;", "ROBOT", "ROBOT r := left"),
+    ("STANDARD_OUT = screen;", "STANDARD_IN and STANDARD_OUT", "STANDARD_OUT = screen"),
+    ("VAR INPUT BOOL: part AT 3;", "INPUT and OUTPUT", "INPUT BOOL: part AT 3"),
+    ("VAR DIGITAL OUTPUT: lamp AT 3;", "INPUT and OUTPUT", "DIGITAL OUTPUT: lamp AT 3"),
+    ("PROCEDURE pick; BEGIN ENDPROC;", "PROCEDURE", "PROCEDURE pick; BEGIN ENDPROC"),
+    ("FUNCTION f: REAL; BEGIN RETURN 1; ENDFCT;", "FUNCTION", "FUNCTION f: REAL; BEGIN RETURN 1; ENDFCT"),
+]
+
+FUNCTIONS = [
+    "ROUND(1.5)",
+    "TRUNC(1.5)",
+    "FLOAT(1)",
+    "DOT(p, p)",
+    "DISTANCE(p, p)",
+    "LEN('a')",
+    "ORD('a')",
+    "MANIPULABILITY(j)",
+]
+
+
+def warnings_of(text):
+    analysis = analyse(source_text("t.irl", text))
+    found = unsupported(analysis.tree, analysis.source)
+    return [(d.code, d.data["what"], text[d.place.span.start : d.place.span.end]) for d in found]
+
+
+def program(declarations, body):
+    return f"PROGRAM t;\n{declarations}\nBEGIN\n{body}\nENDPROGRAM"
+
+
+@pytest.mark.parametrize(("statement", "what", "marked"), STATEMENTS)
+def test_statements(run_error, statement, what, marked):
+    message = f"this version of irlx reads {what} but does not execute it yet"
+    assert run_error(START, statement) == ("IRL590", message, marked)
+    assert warnings_of(program(START, statement))[0] == ("IRL591", what, marked)
+
+
+@pytest.mark.parametrize(("declaration", "what", "marked"), DECLARATIONS)
+def test_declarations(run_error, declaration, what, marked):
+    message = f"this version of irlx reads {what} but does not execute it yet"
+    assert run_error(declaration, "") == ("IRL590", message, marked)
+    assert warnings_of(program(declaration, "")) == [("IRL591", what, marked)]
+
+
+@pytest.mark.parametrize("call", FUNCTIONS)
+@pytest.mark.parametrize("statement", ["x := {};", "MOVE LIN POSITION({}, 0, 0);", "x := 1 + {} * 2;"])
+def test_functions(run_error, statement, call):
+    name = call.split("(")[0]
+    code, message, text = run_error(START, statement.format(call))
+    assert (code, text) == ("IRL590", name)
+    assert message == f"this version of irlx reads the function {name} but does not execute it yet"
+    assert warnings_of(program(START, statement.format(call))) == [("IRL591", f"the function {name}", call)]
+
+
+@pytest.mark.parametrize("type", ["CHAR", "CHARACTER", "FILE", "SEMAPHORE", "SIGNAL", "ROBTARGET"])
+def test_types(run_error, type):
+    code, message, text = run_error(f"VAR {type}: v;", "")
+    assert (code, text) == ("IRL590", type)
+    assert message == f"this version of irlx reads the type {type} but does not execute it yet"
+
+
+def test_line_to_a_posture(run_error):
+    code, message, text = run_error("", "MOVE LIN (1, 2, 3, 4, 5, 6, 7);")
+    assert (code, text) == ("IRL590", "(1, 2, 3, 4, 5, 6, 7)")
+    assert "LIN to a joint target" in message
+
+
+def test_what_is_executed_is_not_warned_about():
+    declarations = START + "CONST ORIENTATION: o := ORIZYX(1, 2, 3); TYPE RECORD REAL: a; ENDRECORD = one;"
+    body = """i := 2; MOVE LIN p SPEED := 3 WITH JOINTLIMIT j, j; MOVE PTP R_JOINT_ACT; FREEZESTART 1;
+    FREEZEEND; CYCLICSTART; CYCLICEND; JOINTLIMITEND; HALT;"""
+    assert warnings_of(program(declarations, body)) == []
+
+
+def test_every_finding_is_reported_in_order():
+    found = warnings_of(program("ROBOT r := left;", "PAUSE; WAIT 2 SEC; PAUSE;"))
+    assert [what for _, what, _ in found] == ["ROBOT", "PAUSE", "WAIT", "PAUSE"]
+
+
+SILENT = [
+    ("VAR FILE: f;", "", "FILE"),
+    ("VAR ARRAY [1..2] OF ROBTARGET: t;", "", "ROBTARGET"),
+    ("VAR REAL: x := ROUND(1.5);", "", "ROUND(1.5)"),
+    ("VAR POSE: t;", "t := R_TOOL;", "R_TOOL"),
+    ("VAR REAL: x;", "x := R_OVERRIDE;", "R_OVERRIDE"),
+    ("VAR BOOL: b;", "b := IN_3;", "IN_3"),
+    ("", "OUT_3 := TRUE;", "OUT_3"),
+]
+
+
+@pytest.mark.parametrize(("declarations", "body", "marked"), SILENT)
+def test_warned_about_as_well(request, declarations, body, marked):
+    reason = "a check says nothing of this part although a run would end there"
+    request.applymarker(pytest.mark.xfail(strict=True, reason=reason))
+    assert marked in [text for _, _, text in warnings_of(program(declarations, body))]
+
+
+@pytest.mark.xfail(strict=True, reason="told as an unknown name, although the language has it")
+@pytest.mark.parametrize(
+    ("declarations", "statement"),
+    [
+        ("VAR POSE: t;", "t := R_TOOL;"),
+        ("VAR REAL: x;", "x := R_OVERRIDE;"),
+        ("VAR BOOL: b;", "b := IN_3;"),
+        ("", "R_BASE := POSE(POSITION(0, 0, 0), ORIXYZ(0, 0, 0));"),
+    ],
+)
+def test_system_variables_and_ports_are_named_as_not_executed(run_error, declarations, statement):
+    assert run_error(declarations, statement)[0] == "IRL590"

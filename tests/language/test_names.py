@@ -1,0 +1,131 @@
+"""Names, symbols, motion and switches beyond the programs of the diagnostics pages."""
+
+import pytest
+
+from irlx.language.analysis import analyse
+from irlx.language.builtins import MOVE_PARAMETERS
+from irlx.language.source import source_text
+
+
+def codes(text):
+    return [(d.code, d.data.get("name")) for d in analyse(source_text("t.irl", text)).diagnostics]
+
+
+@pytest.mark.req("LANG-10")
+def test_symbols_by_kind(analysed):
+    analysis = analysed(
+        "PROGRAM t; FROM m IMPORT i; CONST INT: c := 1; TYPE ARRAY [1..2] OF INT = T2;"
+        " VAR T2: v; INPUT BOOL: in AT 1; BEGIN ENDPROGRAM"
+    )
+    assert [d.code for d in analysis.diagnostics] == ["IRL106"]
+    analysis = analysed(
+        "PROGRAM t; FROM m IMPORT i; CONST INT: c := 1; TYPE ARRAY [1..2] OF INT = T2; ROBOT r := arm;"
+        " VAR T2: v; INPUT BOOL: part AT 1; OUTPUT BOOL: lamp AT 1;"
+        " PROCEDURE p; BEGIN ENDPROC; FUNCTION f: INT; BEGIN RETURN 1; ENDFCT; BEGIN ENDPROGRAM"
+    )
+    assert not analysis.diagnostics
+    assert {key: symbol.kind for key, symbol in analysis.symbols.items()} == {
+        "i": "import",
+        "c": "constant",
+        "r": "robot",
+        "v": "variable",
+        "part": "input",
+        "lamp": "output",
+        "p": "procedure",
+        "f": "function",
+    }
+    assert set(analysis.types) == {"t2"}
+
+
+@pytest.mark.req("LANG-13")
+def test_a_data_list_may_hold_any_name():
+    assert codes("PROGRAM t; IMPORT DATALIST points; BEGIN MOVE LIN p1; ENDPROGRAM") == []
+
+
+@pytest.mark.req("LANG-12")
+def test_imported_names_may_be_anything():
+    text = "PROGRAM t; FROM m IMPORT T1, go, f; VAR T1: x; BEGIN go(x); x := f(1); ENDPROGRAM"
+    assert codes(text) == []
+
+
+def test_unknown_names_are_reported_once():
+    assert codes("PROGRAM t; BEGIN a := b; a := b; ENDPROGRAM") == [("IRL201", "a"), ("IRL201", "b")]
+
+
+@pytest.mark.req("LANG-11")
+def test_routines_see_the_program_and_themselves():
+    text = """PROGRAM t; VAR INT: n;
+    FUNCTION fac(INT: k): INT; BEGIN IF k < 2 THEN RETURN 1; ENDIF; RETURN k * fac(k - 1) + n; ENDFCT;
+    PROCEDURE later; BEGIN earlier; ENDPROC; PROCEDURE earlier; VAR INT: m; BEGIN m := n; later(); ENDPROC;
+    BEGIN n := fac(3); ENDPROGRAM"""
+    assert codes(text) == []
+
+
+@pytest.mark.req("LANG-11")
+def test_local_names_stay_local():
+    text = "PROGRAM t; PROCEDURE p; VAR INT: m; BEGIN m := 1; ENDPROC; BEGIN m := 2; ENDPROGRAM"
+    assert codes(text) == [("IRL201", "m")]
+
+
+def test_loop_variables_are_declared():
+    assert codes("PROGRAM t; BEGIN FOR i := 1 TO 3 DO ENDFOR; ENDPROGRAM") == [("IRL201", "i")]
+
+
+@pytest.mark.req("LANG-20")
+@pytest.mark.req("LANG-22")
+@pytest.mark.req("LANG-23")
+@pytest.mark.req("LANG-34")
+@pytest.mark.req("LANG-52")
+def test_built_in_names_are_known():
+    text = """PROGRAM t; VAR REAL: x; INTEGER: i; CHARACTER: c; BOOLEAN: b; FILE: f; SEMAPHORE: s := 1;
+    MAIN_JOINT_ACCEL_MIN: m; ROBTARGET: g; POSE: pose; BEGIN
+    x := r_speed + R_MOVE_TIME + atan2(1., 2.); pose := R_TOOL @ FK(R_JOINT_ACT);
+    R_BASE := POSE((0,0,0), ORIXYZ(0,0,0));
+    OPEN(f, 'a', 'READ'); WRITELN; ENDPROGRAM"""
+    assert codes(text) == []
+
+
+def test_labels_of_loops_and_exit():
+    text = """PROGRAM t; VAR INT: i; BEGIN
+    again: i := 1;
+    FOR i := 1 TO 3 DO IF i = 2 THEN GOTO again; ENDIF; EXIT; ENDFOR;
+    ENDPROGRAM"""
+    assert codes(text) == []
+
+
+def test_type_and_variable_of_one_name_do_not_clash():
+    assert codes("PROGRAM t; VAR POSE: pose; BEGIN MOVE LIN pose; ENDPROGRAM") == []
+
+
+@pytest.mark.req("LANG-67")
+@pytest.mark.parametrize(
+    ("body", "found"),
+    [
+        ("OBSTACLE a; OBSTACLE b; OBSTACLEEND a; OBSTACLEEND B;", []),
+        ("OBSTACLE a; OBSTACLEEND b;", ["IRL301", "IRL302"]),
+        ("CYCLICSTART; IF TRUE THEN CYCLICEND; ENDIF;", []),
+        ("off; CYCLICSTART; off;", []),
+        ("CYCLICSTART; HALT;", []),
+        ("CRITERION c; CRITERION d; CRITERIONEND c; CRITERIONEND d;", []),
+        ("FREEZESTART 2, 1, 2; FREEZEEND;", ["IRL304"]),
+        ("FREEZESTART -1; FREEZEEND;", ["IRL305"]),
+    ],
+)
+def test_switches_on_the_straight_line(body, found):
+    text = f"PROGRAM t; PROCEDURE off; BEGIN CYCLICEND; ENDPROC; BEGIN {body} ENDPROGRAM"
+    left = [code for code, _ in codes(text)]
+    assert left == found
+
+
+@pytest.mark.req("LANG-67")
+def test_a_switch_left_on_names_both_places(analysed):
+    (found,) = analysed("PROGRAM t;\nBEGIN\nOBSTACLE a;\nENDPROGRAM\n").diagnostics
+    assert found.place.line == 3
+    assert [related.place.line for related in found.related] == [4]
+
+
+@pytest.mark.req("LANG-51")
+def test_every_parameter_of_move_is_known():
+    given = " ".join(f"{word} := 1" for word in MOVE_PARAMETERS if word != "angle")
+    assert "speed_ori" in given
+    assert codes(f"PROGRAM t; VAR POSE: p; BEGIN MOVE LIN p {given}; ENDPROGRAM") == []

@@ -1,0 +1,94 @@
+"""The verifier's kinematics and rotations against Pinocchio and SciPy."""
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from scipy.spatial.transform import Rotation
+
+from irlx.robot.urdf import read_urdf
+from irlx.streams.verify.forward import forward
+from irlx.streams.verify.rotations import (
+    about_axis,
+    angle_between,
+    from_quaternion,
+    from_rpy,
+    rotation_vectors,
+)
+
+
+def random_urdf(rng: np.random.Generator, joints: int) -> str:
+    kinds = ["revolute", "continuous", "prismatic", "fixed"]
+    parts = ['<robot name="r"><link name="l0"/>']
+    for i in range(joints):
+        kind = kinds[rng.integers(4)] if i else "revolute"
+        axis = np.eye(3)[rng.integers(3)] * rng.choice([-1, 1]) if rng.random() < 0.5 else rng.normal(size=3)
+        axis = axis / np.linalg.norm(axis)
+        xyz, rpy, axis = (
+            " ".join(map(repr, v.tolist())) for v in (rng.normal(size=3), rng.uniform(-4, 4, 3), axis)
+        )
+        limit = '<limit lower="-9" upper="9" effort="1" velocity="1"/>' if kind != "fixed" else ""
+        parts.append(
+            f'<link name="l{i + 1}"/><joint name="j{i}" type="{kind}"><parent link="l{i}"/>'
+            f'<child link="l{i + 1}"/><origin xyz="{xyz}" rpy="{rpy}"/><axis xyz="{axis}"/>{limit}</joint>'
+        )
+    return "".join([*parts, "</robot>"])
+
+
+@pytest.mark.req("STR-06")
+@pytest.mark.parametrize("seed", range(12))
+def test_random_chains_against_pinocchio(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    text = random_urdf(rng, int(rng.integers(1, 10)))
+    robot = read_urdf(text)
+    model = pin.buildModelFromXML(text)
+    data = model.createData()
+    frame = model.getFrameId(robot.tip)
+    q = rng.uniform(-4, 4, (20, len(robot.axes)))
+    q[0] = 0.0
+    positions, rotations = forward(robot, q)
+    for row, values in enumerate(q):
+        configuration = pin.neutral(model)
+        for name, value in zip(robot.joint_names, values, strict=True):
+            joint = model.joints[model.getJointId(name)]
+            wide = [np.cos(value), np.sin(value)] if joint.nq == 2 else [value]
+            configuration[joint.idx_q : joint.idx_q + joint.nq] = wide
+        pin.forwardKinematics(model, data, configuration)
+        pose = pin.updateFramePlacement(model, data, frame)
+        assert np.abs(pose.translation - positions[row]).max() < 1e-13
+        assert np.abs(pose.rotation - rotations[row]).max() < 1e-13
+
+
+def test_locked_joints_stand_at_their_value() -> None:
+    text = random_urdf(np.random.default_rng(3), 6)
+    free = read_urdf(text)
+    name = free.joint_names[1]
+    locked = read_urdf(text, locked={name: 0.7})
+    q = np.random.default_rng(0).normal(size=(5, len(free.axes)))
+    q[:, 1] = 0.7
+    for one, other in zip(forward(free, q), forward(locked, np.delete(q, 1, axis=1)), strict=True):
+        assert np.abs(one - other).max() < 1e-15
+
+
+def test_rotations_against_scipy() -> None:
+    rng = np.random.default_rng(1)
+    axes = rng.normal(size=(200, 3))
+    axes /= np.linalg.norm(axes, axis=1)[:, None]
+    angles = np.concatenate(
+        [rng.uniform(0, np.pi, 190), [0, 1e-17, 1e-9, 1e-4, np.pi, np.pi - 1e-9], [1] * 4]
+    )
+    vectors = axes * angles[:, None]
+    oracle = Rotation.from_rotvec(vectors)
+    own = np.stack([about_axis(axis, angle[None])[0] for axis, angle in zip(axes, angles, strict=True)])
+    assert np.abs(own - oracle.as_matrix()).max() < 1e-15
+    assert np.abs(from_quaternion(oracle.as_quat()) - oracle.as_matrix()).max() < 1e-15
+    back = rotation_vectors(own)
+    assert np.abs(np.linalg.norm(back, axis=1) - angles).max() < 1e-13
+    assert np.abs(Rotation.from_rotvec(back).as_matrix() - own).max() < 1e-13
+    rpy = rng.uniform(-3, 3, 3)
+    assert np.abs(from_rpy(tuple(rpy)) - Rotation.from_euler("xyz", rpy).as_matrix()).max() < 1e-15
+
+
+def test_small_angles_are_accurate() -> None:
+    for angle in (1e-12, 1e-9, 1e-6, 0.1, 3.0):
+        turned = about_axis(np.array([0.6, 0.0, 0.8]), np.array([angle]))
+        assert float(angle_between(turned, np.eye(3))[0]) == pytest.approx(angle, rel=1e-4, abs=1e-15)
