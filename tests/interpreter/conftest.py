@@ -28,9 +28,7 @@ def setting():
 
     def make(joints=7, slides=(), poses=None):
         names = tuple(f"j{number}" for number in range(1, joints + 1))
-        return Setting(
-            names, tuple(n in slides for n in range(1, joints + 1)), DEFAULTS, poses or {}
-        )
+        return Setting(names, tuple(n in slides for n in range(1, joints + 1)), DEFAULTS, poses or {})
 
     return make
 

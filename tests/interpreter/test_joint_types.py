@@ -21,7 +21,9 @@ def test_a_program_names_the_joints(lines):
 
 
 @pytest.mark.req("LANG-23")
-@pytest.mark.parametrize("suffix", ["", "_MIN", "_MAX", "_SPEED_MIN", "_SPEED_MAX", "_ACCEL_MIN", "_ACCEL_MAX"])
+@pytest.mark.parametrize(
+    "suffix", ["", "_MIN", "_MAX", "_SPEED_MIN", "_SPEED_MAX", "_ACCEL_MIN", "_ACCEL_MAX"]
+)
 @pytest.mark.parametrize(("form", "found"), [("RECORD REAL: a, b; ENDRECORD", 2), ("REAL", 1)])
 def test_a_joint_type_with_a_wrong_number_of_fields(run_error, suffix, form, found):
     name = f"MAIN_JOINT{suffix}"
@@ -55,24 +57,34 @@ def test_limit_types_with_dotted_fields(lines):
     ],
 )
 def test_joint_types_are_not_interchangeable(run_error, statement, expected):
-    declarations = "VAR MAIN_JOINT: j := (1, 2, 3); MAIN_JOINT_MIN: lo := (0, 0, 0); MAIN_JOINT_MAX: hi := (1, 1, 1);"
+    declarations = (
+        "VAR MAIN_JOINT: j := (1, 2, 3); MAIN_JOINT_MIN: lo := (0, 0, 0); MAIN_JOINT_MAX: hi := (1, 1, 1);"
+    )
     assert run_error(declarations, statement, joints=3) == expected
 
 
 @pytest.mark.req("LANG-23")
-@pytest.mark.xfail(strict=True, reason="JOINT keeps the predefined MAIN_JOINT: 'expected MAIN_JOINT, found MAIN_JOINT'")
+@pytest.mark.xfail(
+    strict=True, reason="JOINT keeps the predefined MAIN_JOINT: 'expected MAIN_JOINT, found MAIN_JOINT'"
+)
 @pytest.mark.parametrize(
-    "statements", ["c.m_joint := j; MOVE PTP c;", "j := R_JOINT_ACT.M_JOINT; MOVE PTP j;", "MOVE PTP R_JOINT_ACT;j := R_JOINT_ACT.M_JOINT;"]
+    "statements",
+    [
+        "c.m_joint := j; MOVE PTP c;",
+        "j := R_JOINT_ACT.M_JOINT; MOVE PTP j;",
+        "MOVE PTP R_JOINT_ACT;j := R_JOINT_ACT.M_JOINT;",
+    ],
 )
 def test_joint_follows_the_programs_own_main_joint(lines, statements):
     assert len(lines(OWN + "VAR JOINT: c; MAIN_JOINT: j := (1, 2, 3);", statements, joints=3)) == 1
 
 
 @pytest.mark.req("LANG-23")
-@pytest.mark.xfail(strict=True, reason="fields of a joint type may be anything; the run ends in an internal error")
-@pytest.mark.parametrize(
-    ("field", "value"), [("POSITION", "(1, 2, 3)"), ("BOOL", "TRUE"), ("STRING", "'a'")]
+@pytest.mark.xfail(
+    strict=True, reason="fields of a joint type may be anything; the run ends in an internal error"
 )
+@pytest.mark.parametrize(("field", "value"), [("POSITION", "(1, 2, 3)"), ("BOOL", "TRUE"), ("STRING", "'a'")])
 def test_fields_of_a_joint_type_are_numbers(run_error, field, value):
-    declarations = f"TYPE RECORD {field}: a, b, c; ENDRECORD = MAIN_JOINT; VAR MAIN_JOINT: j := ({value}, {value}, {value});"
+    declarations = f"TYPE RECORD {field}: a, b, c; ENDRECORD = MAIN_JOINT;"
+    declarations += f" VAR MAIN_JOINT: j := ({value}, {value}, {value});"
     assert run_error(declarations, "MOVE PTP j;", joints=3)[0].startswith("IRL22")

@@ -45,8 +45,10 @@ def test_parameters_and_their_defaults(lines):
     MOVE PTP POSITION(1, 2, 3);
     MOVE PTP POSITION(1, 2, 3) SPEED_PTP := 50 ACC_PTP := 100 TIME := 0.5;"""
     assert lines("", statements) == [
-        "1 MOVE LIN to (1 2 3) kept in R_BASE speed 100 mm/s acc 200 mm/s2 speed_ori 45 deg/s acc_ori 30 deg/s2 line 6",
-        "2 MOVE LIN to (1 2 3) kept in R_BASE speed 50 mm/s acc 7 mm/s2 speed_ori 10 deg/s acc_ori 20 deg/s2 time 3 s line 7",
+        "1 MOVE LIN to (1 2 3) kept in R_BASE speed 100 mm/s acc 200 mm/s2"
+        " speed_ori 45 deg/s acc_ori 30 deg/s2 line 6",
+        "2 MOVE LIN to (1 2 3) kept in R_BASE speed 50 mm/s acc 7 mm/s2"
+        " speed_ori 10 deg/s acc_ori 20 deg/s2 time 3 s line 7",
         "3 MOVE PTP to (1 2 3) kept in R_BASE speed_ptp 80 % acc_ptp 20 % line 8",
         "4 MOVE PTP to (1 2 3) kept in R_BASE speed_ptp 50 % acc_ptp 100 % time 0.5 s line 9",
     ]
@@ -54,7 +56,9 @@ def test_parameters_and_their_defaults(lines):
 
 @pytest.mark.req("LANG-51")
 def test_values_are_latched_when_the_statement_runs(lines):
-    statements = "x := 1; MOVE LIN POSITION(x, 0, 0) SPEED := x; x := 2; MOVE LIN POSITION(x, 0, 0) SPEED := x;"
+    statements = (
+        "x := 1; MOVE LIN POSITION(x, 0, 0) SPEED := x; x := 2; MOVE LIN POSITION(x, 0, 0) SPEED := x;"
+    )
     first, second = lines("VAR REAL: x;", statements)
     assert "(1 0 0)" in first
     assert "speed 1 mm/s" in first
@@ -94,7 +98,9 @@ def test_clauses_hold_for_every_target_of_the_move(blocks):
 def test_units(blocks):
     (move,) = blocks("", "MOVE PTP (180, 1500, -90, 0);", joints=4, slides=(2,))
     assert move.target.values == (radians(180), 1.5, radians(-90), 0.0)
-    (move,) = blocks("", "MOVE LIN ((1500, 0, 0), ORIXYZ(180, 0, 0)) SPEED := 250 ACC := 500 SPEED_ORI := 180;")
+    (move,) = blocks(
+        "", "MOVE LIN ((1500, 0, 0), ORIXYZ(180, 0, 0)) SPEED := 250 ACC := 500 SPEED_ORI := 180;"
+    )
     assert move.target.position == (1.5, 0.0, 0.0)
     assert move.target.orientation == pytest.approx((1.0, 0.0, 0.0, 0.0), abs=1e-15)
     assert (move.law.speed, move.law.acc, move.law.speed_ori) == (0.25, 0.5, radians(180))

@@ -128,7 +128,10 @@ def test_a_record_whose_dotted_fields_are_ambiguous(run_error):
 @pytest.mark.parametrize(
     ("statement", "expected"),
     [
-        ("x := u.a3.max;", ("IRL225", "upper has no field 'a3.max'; did you mean 'a2.max' or 'a1.max'?", ".a3")),
+        (
+            "x := u.a3.max;",
+            ("IRL225", "upper has no field 'a3.max'; did you mean 'a2.max' or 'a1.max'?", ".a3"),
+        ),
         ("x := u.zz;", ("IRL225", "upper has no field 'zz'", ".zz")),
         ("x.y := 1;", ("IRL225", "REAL has no field 'y'", ".y")),
         ("x[1] := 1;", ("IRL222", "expected an ARRAY before [, found REAL", "[1]")),
@@ -228,7 +231,9 @@ def test_parenthesised_variable_of_a_one_field_type(lines):
     assert number(lines, declarations, "v := w;", "v.a") == 4
 
 
-@pytest.mark.xfail(strict=True, reason="(w) is only taken as a one-field aggregate, never as w in parentheses")
+@pytest.mark.xfail(
+    strict=True, reason="(w) is only taken as a one-field aggregate, never as w in parentheses"
+)
 def test_parentheses_around_a_one_field_variable(lines):
     declarations = "TYPE RECORD REAL: a; ENDRECORD = one; VAR one: v, w := (4);"
     assert number(lines, declarations, "v := (w);", "v.a") == 4

@@ -11,6 +11,7 @@ from irlx.motion.line import Line
 pytestmark = [pytest.mark.req("MOT-02"), pytest.mark.req("MOT-11")]
 
 SEEDS = range(40)
+X = np.array([1.0, 0.0, 0.0])
 EXTENTS = [0.0, 1e-6, 1.0, 20.0]
 
 
@@ -102,9 +103,9 @@ def test_pure_turn_has_its_angle_as_length(kit) -> None:
 @pytest.mark.parametrize("residue", [0.0, 1e-16, 0.9e-9])
 def test_nothing_moves_below_a_billionth(kit, residue: float) -> None:
     start = np.array([1.0, 2.0, 3.0])
-    line = Line(start, np.eye(3), start + [residue, 0.0, 0.0], kit.turned(np.eye(3), [residue, 0, 0]))
+    line = Line(start, np.eye(3), start + residue * X, kit.turned(np.eye(3), [residue, 0, 0]))
     assert line.is_nothing
-    assert not Line(start, np.eye(3), start + [2e-9, 0, 0], np.eye(3)).is_nothing
+    assert not Line(start, np.eye(3), start + 2e-9 * X, np.eye(3)).is_nothing
     assert not Line(start, np.eye(3), start, kit.turned(np.eye(3), [2e-9, 0, 0])).is_nothing
 
 

@@ -165,7 +165,7 @@ class _Interpreter:
             for origin in (self._origin(clause),)
         )
         for expression in statement.targets:
-            target = self._target(expression, statement)
+            target = self._target(expression)
             yield MoveBlock(
                 id=self._next_id(),
                 origin=self._origin(statement if len(statement.targets) == 1 else expression),
@@ -175,7 +175,7 @@ class _Interpreter:
                 limits=limits,
             )
 
-    def _target(self, expression: tree.Expression, statement: tree.Move) -> PoseTarget | JointTarget:
+    def _target(self, expression: tree.Expression) -> PoseTarget | JointTarget:
         main, joint = self._scope.types["main_joint"], self._scope.types["joint"]
         value = self._evaluator.one_of(expression, (POSE, POSITION, main, joint))
         if not isinstance(value, RecordValue):
@@ -185,8 +185,6 @@ class _Interpreter:
         if value.type == POSE:
             at, (w, x, y, z) = parts_of(value)
             return PoseTarget(_metres(at), (x, y, z, w))
-        if statement.kind == "LIN":
-            raise fail("IRL590", self._source, expression.span, what="LIN to a joint target")
         return JointTarget(self._joint_values(value.values[0] if value.type == joint else value))
 
     def _law(self, statement: tree.Move) -> MotionLaw:

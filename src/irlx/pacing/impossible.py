@@ -14,8 +14,8 @@ from irlx.pacing.walk import Halt
 from irlx.robot.description import RobotDescription
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
-from irlx.transform.nearest import scaled_singular_values
-from irlx.transform.posture_search import Shortfall, shortfall
+from irlx.transform.nearest import Nearest, scaled_singular_values
+from irlx.transform.posture_search import closest, nearest_approach
 from irlx.transform.step_bounds import BoundSource
 
 Array = NDArray[np.float64]
@@ -46,7 +46,7 @@ def joint_value(robot: RobotDescription, joint: int, value: float, per: str = ""
 
 
 def explain_halt(
-    halt: Halt, around: Surroundings, length: float, goal: Shortfall | None, place: Place
+    halt: Halt, around: Surroundings, length: float, goal: Nearest | None, place: Place
 ) -> Diagnostic:
     """Diagnostic of a tick that no joint step can do (IRL520: bounds, IRL521: out of reach)."""
     robot = around.kinematics.description
@@ -72,11 +72,11 @@ def _only_turns(halt: Halt) -> bool:
     return float(np.linalg.norm(halt.demand.twist[:3])) == 0.0
 
 
-def _missing(twist: Array, goal: Shortfall | None) -> str:
+def _missing(twist: Array, goal: Nearest | None) -> str:
     if goal is not None and (goal.distance > _AT_BOUND or goal.angle > _AT_BOUND):
         return (
             "the target itself is out of reach: the nearest posture found within the limits leaves "
-            f"{goal.distance * 1000.0:.4g} mm and {np.degrees(goal.angle):.4g} deg"
+            f"{goal.distance * 1000.0:.6g} mm and {np.degrees(goal.angle):.4g} deg"
         )
     distance, angle = (float(np.linalg.norm(part)) for part in (twist[:3], twist[3:]))
     return (
@@ -143,6 +143,7 @@ def explain_broken_row(
     )
 
 
-def goal_shortfall(around: Surroundings, rotation: Array, position: Array, q: Array) -> Shortfall:
+def goal_shortfall(around: Surroundings, rotation: Array, position: Array, q: Array) -> Nearest:
     """How near the tool can come to a goal pose within the limits, from any of several starts."""
-    return shortfall(around.kinematics, rotation, position, q, around.limits, around.free)
+    approaches = nearest_approach(around.kinematics, rotation, position, q, around.limits, around.free)
+    return closest(approaches, around.kinematics.description.reach)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +28,7 @@ from irlx.motion.plan_line import plan_line
 from irlx.pacing.clock import programmed_clock
 from irlx.pacing.demand import Demand, DemandModifier, demands
 from irlx.pacing.errors import PacingError
-from irlx.pacing.impossible import Surroundings, explain_broken_row, explain_halt, goal_shortfall
+from irlx.pacing.impossible import Surroundings, explain_broken_row, explain_halt, goal_shortfall, joint_value
 from irlx.pacing.options import LimitsInForce, Options, limits_in_force
 from irlx.pacing.row_check import broken_bound
 from irlx.pacing.rows import MotionRows
@@ -47,6 +46,12 @@ from irlx.transform.step_bounds import StepLimiter
 from irlx.transform.tick import TickSolver
 
 Array = NDArray[np.float64]
+
+POSTURE_REACHED = 1e-6
+"""Difference (rad or m) of a joint at the end of a line to a posture that still counts as reached."""
+
+SAME_VALUE = 1e-12
+"""Joint values closer than this (rad or m) are the same target."""
 
 
 @dataclass(frozen=True)
@@ -112,11 +117,11 @@ class Pacer:
 
     def _line(self, block: MoveBlock, in_force: LimitsInForce) -> MotionRows | None:
         place = self._locate(block.origin)
-        if not isinstance(block.target, PoseTarget):
-            raise PacingError(report("IRL590", place, what="LIN to a joint target"))
         rotation, position = self._setup.kinematics.tool_pose(self.q)
-        plan = plan_line(block, block.target, rotation, position, self._setup.dt, place)
+        posture, target = self._line_target(block, in_force, place)
+        plan = plan_line(block, target, rotation, position, self._setup.dt, place)
         if plan.ticks == 0:
+            self._warn_of_posture_left(self.q, posture, place)
             return None
         free = self.options.free_joints(self.q.size)
         around = Surroundings(self._setup.kinematics, in_force.limits, free, self._setup.dt)
@@ -124,7 +129,7 @@ class Pacer:
         walked = walk(
             self._solver,
             StepLimiter(in_force.limits, self._setup.dt),
-            self._criterion(),
+            self._criterion_of(posture, plan.path.length),
             free,
             self.q,
             demands(plan.path, clock, self.tick + 1, self._setup.modifiers),
@@ -133,13 +138,48 @@ class Pacer:
             goal = goal_shortfall(around, plan.path.end_rotation, plan.path.end_position, self.q)
             raise PacingError(explain_halt(walked.halt, around, plan.path.length, goal, place))
         self._check_rows(walked.q, in_force.limits, place)
+        self._warn_of_posture_left(walked.q[-1], posture, place)
         return self._line_rows(block, plan.path, walked)
 
-    def _criterion(self) -> Criterion:
-        """The one posture term in force: cyclic return, else least motion."""
+    def _line_target(
+        self, block: MoveBlock, in_force: LimitsInForce, place: Place
+    ) -> tuple[Array | None, PoseTarget]:
+        """Pose at which a line ends, and the posture to end in where the target is one."""
+        if isinstance(block.target, PoseTarget):
+            return None, block.target
+        posture = np.array(block.target.values)
+        check_joint_target(posture, self._robot, in_force.limits, place)
+        rotation, position = self._setup.kinematics.tool_pose(posture)
+        x, y, z, w = Rotation.from_matrix(rotation).as_quat()
+        return posture, PoseTarget(
+            (float(position[0]), float(position[1]), float(position[2])),
+            (float(x), float(y), float(z), float(w)),
+        )
+
+    def _criterion_of(self, posture: Array | None, length: float) -> Callable[[Demand], Criterion]:
+        """The one posture term in force: a target posture on the way, else cyclic return, else least motion.
+
+        Towards a target posture the reference runs from the present one with the path parameter, so
+        that it is reached together with the pose.
+        """
+        weights, start = self._setup.weights, self.q
+        if posture is not None:
+            way = posture - start
+            return lambda demand: Posture(weights, start + (demand.s / length) * way)
+        fixed: Criterion = LeastMotion(weights)
         if self.options.cyclic_posture is not None:
-            return Posture(self._setup.weights, self.options.cyclic_posture)
-        return LeastMotion(self._setup.weights)
+            fixed = Posture(weights, self.options.cyclic_posture)
+        return lambda demand: fixed
+
+    def _warn_of_posture_left(self, q: Array, posture: Array | None, place: Place) -> None:
+        if posture is None:
+            return
+        left = np.abs(posture - q)
+        joint = int(np.argmax(left))
+        if left[joint] > POSTURE_REACHED:
+            difference = joint_value(self._robot, joint, float(left[joint]))
+            warned = report("IRL348", place, joint=self._robot.axes[joint].name, difference=difference)
+            self.warnings.append(warned)
 
     def _check_rows(self, q: Array, limits: JointLimits, place: Place) -> None:
         held = np.vstack([q, q[-1:]])
@@ -179,6 +219,8 @@ class Pacer:
     def _joint_line(self, block: MoveBlock, in_force: LimitsInForce) -> MotionRows | None:
         place = self._locate(block.origin)
         end = self._end_posture(block, in_force, place)
+        # Degrees in a program come back as radians that may be off by the last bits: nothing moves for that.
+        end = np.where(np.abs(end - self.q) <= SAME_VALUE, self.q, end)
         frozen = [number for number in self.options.frozen if end[number - 1] != self.q[number - 1]]
         if frozen:
             joint = self._robot.axes[frozen[0] - 1].name
@@ -219,7 +261,7 @@ class Pacer:
         free = self.options.free_joints(self.q.size)
         drawn_to = self.options.cyclic_posture if self.options.cyclic_posture is not None else self.q
         start = np.where(free, drawn_to, self.q)
-        found = nearest_posture(
+        search = nearest_posture(
             self._setup.kinematics,
             self._qp,
             rotation,
@@ -229,15 +271,10 @@ class Pacer:
             in_force.limits,
             free,
         )
-        if found is None:
-            around = Surroundings(self._setup.kinematics, in_force.limits, free, self._setup.dt)
-            goal = goal_shortfall(around, rotation, position, self.q)
-            data: dict[str, Any] = {
-                "distance": f"{goal.distance * 1000.0:.4g}",
-                "angle": f"{np.degrees(goal.angle):.4g}",
-            }
-            raise PacingError(report("IRL522", place, **data))
-        return found
+        if search.q is None:
+            distance, angle = search.nearest.distance * 1000.0, np.degrees(search.nearest.angle)
+            raise PacingError(report("IRL522", place, distance=f"{distance:.6g}", angle=f"{angle:.4g}"))
+        return search.q
 
 
 def _held(rows: Array) -> Array:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,19 +57,19 @@ def check_limit(
 def _range_errors(
     kind: LimitKind, joint_range: JointRange, robot: RobotDescription, place: Place
 ) -> list[Diagnostic]:
-    errors = []
+    """IRL340 for bounds the wrong way round, IRL342 for rates without standstill; all joints in one."""
+    crossed, moving = [], []
     for joint, (lower, upper) in enumerate(zip(joint_range.lower, joint_range.upper, strict=True)):
-        data: dict[str, Any] = {
-            "word": _WORDS[kind],
-            "joint": robot.axes[joint].name,
-            "lower": joint_value(robot, joint, lower, _PER[kind]),
-            "upper": joint_value(robot, joint, upper, _PER[kind]),
-        }
+        low, high = (joint_value(robot, joint, value, _PER[kind]) for value in (lower, upper))
+        words = f"{robot.axes[joint].name} ({low} to {high})"
         if lower > upper:
-            errors.append(report("IRL340", place, **data))
+            crossed.append(words)
         elif kind is not LimitKind.POSITION and not lower <= 0.0 <= upper:
-            errors.append(report("IRL342", place, **data))
-    return errors
+            moving.append(words)
+    found = [("IRL340", crossed), ("IRL342", moving)]
+    return [
+        report(code, place, word=_WORDS[kind], joints=", ".join(joints)) for code, joints in found if joints
+    ]
 
 
 def _outside(
@@ -114,7 +113,7 @@ def check_freeze(block: FreezeBlock, robot: RobotDescription, place: Place) -> N
 
 
 def check_joint_target(q: Array, robot: RobotDescription, limits: JointLimits, place: Place) -> None:
-    """Raise PacingError, IRL424, where a joint target lies outside the limits in force."""
+    """Raise PacingError, IRL424, where a joint target (n,) lies outside the limits in force."""
     outside = np.flatnonzero((q < limits.position_lower) | (q > limits.position_upper))
     if outside.size == 0:
         return

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,14 +42,15 @@ class Walk:
 def walk(
     solver: TickSolver,
     limiter: StepLimiter,
-    criterion: Criterion,
+    criterion_of: Callable[[Demand], Criterion],
     free: NDArray[np.bool_],
     start: Array,
     demands: Iterable[Demand],
 ) -> Walk:
     """Walk from rest at posture `start` (n,) through the demands, one tick each.
 
-    `limiter` holds the limits in force, `free` (n,) the joints that are not frozen.
+    `limiter` holds the limits in force, `criterion_of` gives the criterion of a tick, `free` (n,) is True
+    for the joints that are not frozen.
     """
     q, speed = start, np.zeros_like(start)
     rows: list[Array] = []
@@ -60,7 +61,7 @@ def walk(
     for demand in demands:
         bounds = limiter.bounds(q, speed)
         target = solver.kinematics.target(demand.rotation, demand.position)
-        solution = solver.solve(TickProblem(target, q, bounds, criterion, free))
+        solution = solver.solve(TickProblem(target, q, bounds, criterion_of(demand), free))
         iterations += solution.iterations
         if not solution.solved:
             halt = Halt(demand, bounds, solution)

@@ -112,6 +112,15 @@ class Kinematics:
         jacobian = pin.getFrameJacobian(self.model, self.data, self._tip_frame, pin.ReferenceFrame.LOCAL)
         return twist, jacobian
 
+    def difference_derivative(self, q: Array, target: pin.SE3) -> tuple[Array, Array]:
+        """The twist of `difference` and its exact derivative by q, shape (6, n), also far from the target.
+
+        With E = T(q)^-1 T_target a step d turns E into exp(-J d) E, so d log6(E) = -Jlog6(E) Ad(E^-1) J d.
+        """
+        twist, jacobian = self.difference(q, target)
+        apart = self.data.oMf[self._tip_frame].actInv(target)
+        return twist, -pin.Jlog6(apart) @ apart.inverse().action @ jacobian
+
     def target(self, rotation: Array, position: Array) -> pin.SE3:
         """Pose of rotation (3, 3) and position (3,) m as Pinocchio keeps it."""
         return pin.SE3(rotation, position)

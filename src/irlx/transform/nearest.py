@@ -1,16 +1,22 @@
-"""Steps for the two cases in which the exact problem has none: singular postures, closed bounds."""
+"""What to do where a Newton step has no solution: singular postures, poses out of reach."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
+import pinocchio as pin
 from numpy.typing import NDArray
 
+from irlx.robot.kinematics import Kinematics
 from irlx.transform.compact import StepProblem
 
 Array = NDArray[np.float64]
 
 _DAMPING = 1e-3
-_SHARE_OF_CRITERION = 1e-6
+_NO_ROOM = 1e-12
+_FINE = 1e-15
+_EVALUATIONS = 100
 
 
 def scaled_singular_values(jacobian: Array, reach: float) -> Array:
@@ -34,22 +40,63 @@ def damped_step(problem: StepProblem, reach: float) -> Array:
     return np.asarray(scaled.T @ k)
 
 
-def nearest_step(problem: StepProblem, reach: float) -> Array:
-    """Step within the bounds that comes nearest to the demanded pose (least squares).
+@dataclass(frozen=True)
+class Nearest:
+    """Posture q (n,) that comes nearest to a pose, and the twist (6,) that is left."""
 
-    Used where no step keeps path and bounds: its residual says by how much the robot falls short.
+    q: Array
+    twist: Array
+
+    @property
+    def distance(self) -> float:
+        """Distance left, m."""
+        return float(np.linalg.norm(self.twist[:3]))
+
+    @property
+    def angle(self) -> float:
+        """Angle left, rad."""
+        return float(np.linalg.norm(self.twist[3:]))
+
+
+def nearest_in_bounds(
+    kinematics: Kinematics, target: pin.SE3, q: Array, lower: Array, upper: Array, free: NDArray[np.bool_]
+) -> Nearest:
+    """Posture with lower <= q <= upper (n,) that comes nearest to a pose, searched from q.
+
+    Frozen joints stay. Least squares of log6 of the pose difference, its translation divided by the
+    robot's reach. Used where Newton steps find nothing: its residual says how far the robot falls short.
     """
-    from scipy.optimize import lsq_linear
+    from scipy.optimize import least_squares
 
-    row_scale = np.array([1.0 / reach] * 3 + [1.0] * 3)
-    root = np.sqrt(_SHARE_OF_CRITERION * problem.hessian / np.max(problem.hessian))
-    matrix = np.vstack([problem.jacobian * row_scale[:, None], np.diag(root)])
-    target = np.concatenate([problem.twist * row_scale, np.zeros(root.size)])
-    lower, upper = np.minimum(problem.lower, problem.upper), np.maximum(problem.lower, problem.upper)
-    moving = upper > lower
-    d = np.where(moving, 0.0, lower)
-    if np.any(moving):
-        rest = target - matrix @ d
-        solution = lsq_linear(matrix[:, moving], rest, (lower[moving], upper[moving]), method="bvls")
-        d[moving] = solution.x
-    return d
+    scale = np.array([1.0 / kinematics.description.reach] * 3 + [1.0] * 3)
+    movable = free & (upper - lower > _NO_ROOM)
+
+    def posture(x: Array) -> Array:
+        full: Array = np.clip(q, lower, upper)
+        full[~free] = q[~free]
+        full[movable] = x
+        return full
+
+    def residual(x: Array) -> Array:
+        return np.asarray(scale * kinematics.difference(posture(x), target)[0])
+
+    def derivative(x: Array) -> Array:
+        _, jacobian = kinematics.difference_derivative(posture(x), target)
+        return np.asarray(scale[:, None] * jacobian[:, movable])
+
+    if not np.any(movable):
+        return Nearest(q, kinematics.difference(q, target)[0])
+    low, high = lower[movable], upper[movable]
+    start = np.clip(q[movable], low, high)
+    found = least_squares(
+        residual,
+        start,
+        derivative,
+        bounds=(low, high),
+        xtol=_FINE,
+        ftol=_FINE,
+        gtol=_FINE,
+        max_nfev=_EVALUATIONS,
+    )
+    nearest = posture(found.x)
+    return Nearest(nearest, kinematics.difference(nearest, target)[0])

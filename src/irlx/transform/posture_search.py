@@ -6,11 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
 
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
+from irlx.robot.promises import PATH_ORIENTATION, PATH_POSITION
 from irlx.transform.criteria.posture import Posture
+from irlx.transform.nearest import Nearest, nearest_in_bounds
 from irlx.transform.qp.solver import QpSolver
 from irlx.transform.step_bounds import BoundSource, StepBounds
 from irlx.transform.tick import TickProblem, TickSolver
@@ -22,15 +23,34 @@ RESTARTS = 16
 
 _SEED = 11
 _ITERATIONS = 200
+_ALIKE = 1e-9
 
 
 @dataclass(frozen=True)
-class Shortfall:
-    """How near the tool comes to a pose out of reach: posture (n,), distance m, angle rad."""
+class PostureSearch:
+    """Posture found (n,), or None; and how near any start came to the pose."""
 
-    q: Array
-    distance: float
-    angle: float
+    q: Array | None
+    nearest: Nearest
+
+
+def nearest_approach(
+    kinematics: Kinematics,
+    rotation: Array,
+    position: Array,
+    q: Array,
+    limits: JointLimits,
+    free: NDArray[np.bool_],
+) -> list[Nearest]:
+    """Postures within the position limits that come nearest to a tool pose, one from each start.
+
+    Pose in the world: rotation (3, 3), position (3,) m. Starts are q and `RESTARTS` fixed random
+    postures within the limits; frozen joints keep their values.
+    """
+    target = kinematics.target(rotation, position)
+    lower, upper = limits.position_lower, limits.position_upper
+    starts = _starts(q, limits, free)
+    return [nearest_in_bounds(kinematics, target, start, lower, upper, free) for start in starts]
 
 
 def nearest_posture(
@@ -42,24 +62,31 @@ def nearest_posture(
     weights: Array,
     limits: JointLimits,
     free: NDArray[np.bool_],
-) -> Array | None:
-    """Posture at a tool pose that lies nearest to q by the weighted norm, None where none was found.
+) -> PostureSearch:
+    """Posture at a tool pose that lies nearest to q by the weighted norm, among those of all starts.
 
-    Pose in the world: rotation (3, 3), position (3,) m. Searched from q and `RESTARTS` fixed random
-    postures within the position limits; frozen joints keep their values.
+    Each start is led onto the pose, then along it towards q by the posture criterion.
     """
     solver = TickSolver(kinematics, qp, max_iterations=_ITERATIONS)
     target = kinematics.target(rotation, position)
     criterion = Posture(weights, q)
+    approaches = nearest_approach(kinematics, rotation, position, q, limits, free)
     best: Array | None = None
     least = np.inf
-    for start in _starts(q, limits, free):
-        problem = TickProblem(target, start, _position_room(start, limits), criterion, free)
+    for approach in approaches:
+        if approach.distance > PATH_POSITION or approach.angle > PATH_ORIENTATION:
+            continue
+        problem = TickProblem(target, approach.q, _position_room(approach.q, limits), criterion, free)
         solution = solver.solve(problem)
         away = float(weights @ (solution.q - q) ** 2)
-        if solution.solved and away < least * (1.0 - 1e-9):
+        if solution.solved and away < least * (1.0 - _ALIKE):
             best, least = solution.q, away
-    return best
+    return PostureSearch(best, closest(approaches, kinematics.description.reach))
+
+
+def closest(approaches: list[Nearest], reach: float) -> Nearest:
+    """The approach that leaves least; distances count divided by the robot's reach (m)."""
+    return min(approaches, key=lambda found: (found.distance / reach) ** 2 + found.angle**2)
 
 
 def _starts(q: Array, limits: JointLimits, free: NDArray[np.bool_]) -> list[Array]:
@@ -73,48 +100,3 @@ def _starts(q: Array, limits: JointLimits, free: NDArray[np.bool_]) -> list[Arra
 def _position_room(q: Array, limits: JointLimits) -> StepBounds:
     source = np.full(q.size, BoundSource.POSITION, dtype=np.int8)
     return StepBounds(limits.position_lower - q, limits.position_upper - q, source, source)
-
-
-def shortfall(
-    kinematics: Kinematics,
-    rotation: Array,
-    position: Array,
-    q: Array,
-    limits: JointLimits,
-    free: NDArray[np.bool_],
-) -> Shortfall:
-    """The posture within the limits, over all starts, that comes nearest to a pose out of reach.
-
-    Nearest by |log6| of the pose difference, its translation divided by the robot's reach.
-    """
-    target = kinematics.target(rotation, position)
-    scale = np.array([1.0 / kinematics.description.reach] * 3 + [1.0] * 3)
-    lower, upper = limits.position_lower[free], limits.position_upper[free]
-    movable = lower < upper
-
-    def posture(start: Array, x: Array) -> Array:
-        full: Array = start.copy()
-        part: Array = start[free]
-        part[movable] = x
-        full[free] = part
-        return full
-
-    def residual(x: Array, start: Array) -> Array:
-        return np.asarray(scale * kinematics.difference(posture(start, x), target)[0])
-
-    best: Shortfall | None = None
-    least = np.inf
-    for start in _starts(q, limits, free):
-        bounds = (lower[movable], upper[movable])
-        x = np.clip(start[free][movable], *bounds)
-        result = least_squares(residual, x, bounds=bounds, args=(start,), max_nfev=60)
-        if result.cost < least:
-            least = result.cost
-            found = posture(start, result.x)
-            _, tool_position = kinematics.tool_pose(found)
-            turn = kinematics.difference(found, target)[0][3:]
-            distance = float(np.linalg.norm(tool_position - position))
-            best = Shortfall(found, distance, float(np.linalg.norm(turn)))
-    if best is None:
-        raise ArithmeticError("no start to search from")
-    return best

@@ -26,3 +26,6 @@ EMPTY_INTERVAL = 1e-12
 
 FINAL_CLIP = 1e-9
 """A solution outside its bounds by more than this (rad or m) is an error of the solver."""
+
+AT_BOUND = 1e-6
+"""A joint of an unsolved tick stands on a bound when it is this near to it (rad or m)."""

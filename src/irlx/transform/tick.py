@@ -13,8 +13,9 @@ from irlx.robot.kinematics import Kinematics
 from irlx.transform.compact import Step, StepProblem, bounded_step, free_step, within
 from irlx.transform.criteria.criterion import Criterion
 from irlx.transform.criterion_pace import CriterionPace
-from irlx.transform.nearest import damped_step, nearest_step, scaled_singular_values
+from irlx.transform.nearest import Nearest, damped_step, nearest_in_bounds, scaled_singular_values
 from irlx.transform.precision import (
+    AT_BOUND,
     FINAL_CLIP,
     MAX_ITERATIONS,
     MAX_NEWTON_STEP,
@@ -58,7 +59,8 @@ class TickSolution:
     """Posture q (n,) at the end of a tick, and how it was found.
 
     `active` is +1 / -1 for joints held at the upper / lower bound of their step. `twist` (6,) is
-    what is left to the demanded pose before the last step where the tick is solved, else at q.
+    what is left to the demanded pose: before the last step where the tick is solved, else at q, the
+    posture within the bounds that comes nearest.
     """
 
     status: TickStatus
@@ -88,30 +90,39 @@ class TickSolver:
         A tick is solved once a Newton step starts from a pose error within tolerance and moves no
         joint by more than `SETTLED_STEP`: that last step squares what was left.
         """
-        bounds = problem.bounds
-        if bounds.conflicts.size:
+        if problem.bounds.conflicts.size:
             nothing = np.zeros(problem.q.size, dtype=np.int8)
             return TickSolution(TickStatus.BOUNDS_CONFLICT, problem.q, nothing, np.zeros(6), 0)
-        whole = np.zeros(problem.q.size)
-        closed = False
+        first = self._newton(problem, np.zeros(problem.q.size))
+        if isinstance(first, TickSolution):
+            return first
+        # Bounds can close the way that the first linear step sees and leave another one open.
+        nearest = self._nearest(problem)
+        if _met(nearest.twist):
+            second = self._newton(problem, nearest.q - problem.q)
+            if isinstance(second, TickSolution):
+                return second
+        return self._unsolved(problem, nearest, first)
+
+    def _newton(self, problem: TickProblem, whole: Array) -> TickSolution | TickStatus:
+        """Iterate from `whole` (step since the start of the tick); the status says why it failed."""
+        bounds = problem.bounds
         pace = CriterionPace()
         for iteration in range(1, self._max_iterations + 1):
             step_problem, d_free = self.newton_problem(problem, whole)
             step = self._step(step_problem, d_free)
-            closed = step is None
             if step is None:
-                step = Step(nearest_step(step_problem, self.reach), np.zeros(d_free.size, dtype=np.int8))
-            d = step.d if closed else pace.shape(step_problem, step.d)
+                return TickStatus.NO_STEP
+            d = pace.shape(step_problem, step.d)
             d = d * min(1.0, MAX_NEWTON_STEP / max(float(np.max(np.abs(d), initial=0.0)), 1e-300))
+            whole = whole.copy()
             whole[problem.free] += d
             clipped = np.clip(whole, bounds.lower, bounds.upper)
             moved = float(np.max(np.abs(d), initial=0.0))
-            if not closed and moved <= SETTLED_STEP and _met(step_problem.twist):
+            if moved <= SETTLED_STEP and _met(step_problem.twist):
                 return self._finish(problem, whole, clipped, step, step_problem.twist, iteration)
             whole = np.where(problem.free, clipped, 0.0)
-            if closed and moved <= SETTLED_STEP:
-                break
-        return self._unsolved(problem, whole, closed, iteration)
+        return TickStatus.NOT_CONVERGED
 
     def newton_problem(self, problem: TickProblem, whole: Array) -> tuple[StepProblem, Array]:
         """The Newton step at the iterate `whole` (step since the start of the tick), free joints only.
@@ -153,14 +164,16 @@ class TickSolver:
         q = np.where(problem.free, problem.q + clipped, problem.q)
         return TickSolution(TickStatus.SOLVED, q, active, twist, iterations)
 
-    def _unsolved(self, problem: TickProblem, whole: Array, closed: bool, iterations: int) -> TickSolution:
-        q = np.where(problem.free, problem.q + whole, problem.q)
-        twist, _ = self.kinematics.difference(q, problem.target)
-        bounds = problem.bounds
-        active = np.where(whole >= bounds.upper, 1, np.where(whole <= bounds.lower, -1, 0)).astype(np.int8)
+    def _nearest(self, problem: TickProblem) -> Nearest:
+        lower, upper = problem.q + problem.bounds.lower, problem.q + problem.bounds.upper
+        return nearest_in_bounds(self.kinematics, problem.target, problem.q, lower, upper, problem.free)
+
+    def _unsolved(self, problem: TickProblem, nearest: Nearest, status: TickStatus) -> TickSolution:
+        bounds, whole = problem.bounds, nearest.q - problem.q
+        at_upper, at_lower = bounds.upper - whole <= AT_BOUND, whole - bounds.lower <= AT_BOUND
+        active = np.where(at_upper, 1, np.where(at_lower, -1, 0)).astype(np.int8)
         active[~problem.free] = 0
-        status = TickStatus.NO_STEP if closed else TickStatus.NOT_CONVERGED
-        return TickSolution(status, q, active, twist, iterations)
+        return TickSolution(status, nearest.q, active, nearest.twist, self._max_iterations)
 
 
 def _met(twist: Array) -> bool:

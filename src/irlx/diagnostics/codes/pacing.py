@@ -3,13 +3,13 @@
 from irlx.diagnostics.codes.code import error, warning
 
 PACING = (
-    error("IRL340", "{word}: the lower bound {lower} of {joint} is above its upper bound {upper}"),
+    error("IRL340", "{word}: the lower bound is above the upper one for {joints}", "exchange the two"),
     warning(
         "IRL341",
         "{word} is wider than the robot allows for {joints}; the robot's own bound stays",
         "a program can only narrow the limits of the cell",
     ),
-    error("IRL342", "{word}: the range {lower} to {upper} of {joint} does not contain standstill (0)"),
+    error("IRL342", "{word}: the range does not contain standstill (0) for {joints}"),
     error(
         "IRL343",
         "PTP would have to move {joint}, which is frozen",
@@ -25,6 +25,11 @@ PACING = (
         "IRL347",
         "{frozen} joints are frozen, but a robot of {joints} joints can spare {spare}: the tool needs 6",
         "freeze fewer joints",
+    ),
+    warning(
+        "IRL348",
+        "the line ends at the target's pose, but {joint} is {difference} away from the target's posture",
+        "limits, frozen joints or the way there held it; MOVE PTP reaches a posture exactly",
     ),
     error(
         "IRL421",

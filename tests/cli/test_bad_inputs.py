@@ -1,0 +1,237 @@
+"""What users get wrong: a code, a place, an exit code, nothing left behind, never a traceback."""
+
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import pytest
+
+CELL_END = "[motion]"
+UNCHANGED = ["p.irl", "p.toml"]
+
+
+def write(folder, name, content):
+    data = content if isinstance(content, bytes) else content.encode()
+    (folder / name).write_bytes(data)
+
+
+SYNTAX = [
+    ("", 1, "p.irl:1:1: error IRL117: the file holds no program"),
+    (b"PROGRAM p;\0\1\2", 1, "p.irl: byte 10: error IRL131: not a text file: NUL byte at offset 10"),
+    (b"PROGRAM p; { \xfc }", 1, "p.irl: byte 13: error IRL130: not UTF-8 text: byte 0xFC at offset 13"),
+    ("PROGRAM p;\nBEGIN\n  MOVE LIN (1, 2;\nENDPROGRAM", 1, "p.irl:3:17: error IRL101: expected "),
+    ("PROGRAM p;\nBEGIN\n  MOVE LIN nowhere;\nENDPROGRAM", 1, "p.irl:3:12: error IRL201: unknown name"),
+]
+
+
+@pytest.mark.req("QA-09")
+@pytest.mark.parametrize(("content", "code", "words"), SYNTAX)
+def test_programs_that_cannot_be_read(command, folder, names, content, code, words):
+    write(folder, "p.irl", content)
+    done = command("run", "p.irl")
+    assert done.returncode == code
+    assert words in done.stderr
+    assert done.stdout == ""
+    assert names(folder) == UNCHANGED
+    checked = command("check", "p.irl")
+    assert checked.returncode == code
+    assert words in checked.stderr
+    assert checked.stdout == "p.irl: 1 error, 0 warnings\n"
+
+
+@pytest.mark.req("QA-09")
+@pytest.mark.parametrize("verb", ["run", "check", "blocks"])
+def test_a_missing_program(command, folder, names, verb):
+    done = command(verb, "q.irl")
+    assert done.returncode == 2
+    assert done.stderr.startswith("error IRL001: no such file: q.irl; did you mean 'p.irl'?\n")
+    assert names(folder) == UNCHANGED
+
+
+@pytest.mark.req("QA-09")
+def test_a_folder_is_no_program(command):
+    done = command("check", ".")
+    assert done.returncode == 2
+    assert done.stderr == "error IRL007: . is a folder, not a file\n"
+
+
+CELLS = [
+    ("[robot\n", "p.toml: error IRL601: the cell file is not TOML: "),
+    ("[robot]\nmodel = 'koch12'\n", "p.toml: robot.model: error IRL611: no robot 'koch12'; did you mean 'koch11'?"),
+    (
+        "[robot]\nmodel = 'koch11'\nstart = [0, 95, -102, 146, -80, -8, 55, 24, 106, -400, 58]\n",
+        "p.toml: robot.start[2]: error IRL620: joint_2 starts at 95 deg, outside its limits",
+    ),
+    ("[robot]\nmodel = 'koch11'\nstrat = []\n", "p.toml: robot.strat: error IRL602: no such key: robot.strat; did you"),
+    (None, "p.irl: error IRL609: no cell file found; tried p.toml"),
+]
+
+
+@pytest.mark.req("QA-09")
+@pytest.mark.req("CELL-01")
+@pytest.mark.parametrize(("content", "words"), CELLS)
+def test_cells_that_cannot_be_used(command, folder, names, content, words):
+    (folder / "p.toml").unlink()
+    if content is not None:
+        write(folder, "p.toml", content)
+    before = names(folder)
+    done = command("run", "p.irl")
+    assert done.returncode == 2
+    assert words in done.stderr
+    assert done.stdout == ""
+    assert names(folder) == before
+
+
+LIMITS = """MAIN_JOINT_MIN: lo := (-180, -150, -180, 0, -180, -180, -180, -60, -180, -500, {});
+MAIN_JOINT_MAX: hi := (180, 0, 0, 180, 0, 0, 180, 60, 180, 500, {});"""
+RUNS = [
+    (LIMITS.format(60, 0), "JOINTLIMIT lo, hi;", "IRL340: JOINTLIMIT: the lower bound 60 deg of joint_11"),
+    (LIMITS.format(0, 20), "JOINTLIMIT lo, hi;", "IRL345: joint_11 stands at 58.9879 deg, above the bound 20 deg"),
+    ("", "FREEZESTART 1, 2, 3, 4, 5, 6;", "IRL347: 6 joints are frozen, but a robot of 11 joints can spare 5"),
+    ("", "FREEZESTART 12;", "IRL346: FREEZESTART names joint 12; the robot has joints 1 to 11"),
+    ("", "MOVE LIN POSITION(11400, 1000, 1 / 0);", "IRL502: division by zero"),
+    ("", "PAUSE;", "IRL590: this version of irlx reads PAUSE but does not execute it yet"),
+]
+
+
+@pytest.mark.req("QA-09")
+@pytest.mark.req("LANG-72")
+@pytest.mark.parametrize(("declarations", "statement", "words"), RUNS)
+def test_programs_that_the_robot_cannot_execute(command, folder, names, declarations, statement, words):
+    text = f"PROGRAM p;\nVAR REAL: x; {' '.join(declarations.split())}\nBEGIN\n  {statement}\nENDPROGRAM\n"
+    write(folder, "p.irl", text)
+    done = command("run", "p.irl", "--quiet")
+    assert done.returncode == 1
+    place, _, message = done.stderr.splitlines()[0].partition(" error ")
+    assert place.startswith("p.irl:4:")
+    assert message.startswith(words)
+    assert names(folder) == UNCHANGED
+
+
+@pytest.mark.req("QA-09")
+@pytest.mark.req("LANG-72")
+def test_a_pose_out_of_reach_in_the_third_move(command, folder, names):
+    text = """PROGRAM p;
+VAR POSITION: near := (11400, 1000, 3500);
+BEGIN
+  MOVE LIN near, POSITION(11500, 1000, 3500);
+  MOVE LIN POSITION(95000, 1000, 3500);
+ENDPROGRAM
+"""
+    write(folder, "p.irl", text)
+    done = command("run", "p.irl", "-o", "out.irdata", "-o", "out.csv")
+    assert done.returncode == 1
+    assert done.stdout == ""
+    message = done.stderr.splitlines()[0]
+    assert message.startswith("p.irl:5:3: error IRL520: the tool cannot follow this move beyond ")
+    assert "joint_" in message
+    assert "out of reach" in message
+    assert "leaves" in message
+    assert "MOVE LIN POSITION(95000, 1000, 3500);" in done.stderr
+    # The asked names only ever hold complete streams.
+    assert names(folder) == ["out.partial.csv", "out.partial.irdata", *UNCHANGED]
+    assert "marked incomplete: out.partial.irdata" in done.stderr
+    verified = command("verify", "out.partial.irdata", "--cell", "p.toml")
+    assert verified.returncode == 1
+    failed = [line.split()[0] for line in verified.stdout.splitlines() if " failed" in line]
+    assert failed == ["complete"]
+
+
+OUTPUTS = [
+    (["-o", "out.foo"], "IRL004: -o out.foo: no format has the ending '.foo'; known: .irdata, .csv, .npz"),
+    (["-o", "out"], "IRL004: -o out: no format has the ending ''; known: .irdata, .csv, .npz"),
+    (["-o", "link.csv"], "IRL005: -o link.csv would overwrite an input of this run"),
+    (["-o", "no/out.csv"], "IRL003: cannot write no/out.csv: no such file or directory"),
+    (["-o", "p.irl/out.csv"], "IRL003: cannot write p.irl/out.csv: "),
+    (["-o", "/proc/out.csv"], "IRL003: cannot write /proc/out.csv: "),
+    (["-o", "folder.csv"], "IRL003: cannot write folder.csv: "),
+    (["-o", "ok.csv", "-o", "out.foo"], "IRL004: -o out.foo: "),
+    (["--tick", "0.1"], "IRL006: --tick 0.1: a tick lasts 0.25 to 1000 ms"),
+    (["--tick", "1001"], "IRL006: --tick 1001: a tick lasts 0.25 to 1000 ms"),
+    (["--tick", "nan"], "IRL006: --tick nan: a tick lasts 0.25 to 1000 ms"),
+]
+
+
+@pytest.mark.req("QA-09")
+@pytest.mark.parametrize(("options", "words"), OUTPUTS)
+def test_options_that_cannot_be(folder, names, monkeypatch, capsys, options, words):
+    from irlx.cli.main import main
+
+    (folder / "link.csv").symlink_to("p.irl")
+    (folder / "folder.csv").mkdir()
+    monkeypatch.chdir(folder)
+    assert main(["run", "p.irl", *options]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith(f"error {words}")
+    assert names(folder) == ["folder.csv", "link.csv", *UNCHANGED]
+
+
+@pytest.mark.req("QA-09")
+def test_the_default_output_is_no_input(command, folder, names):
+    (folder / "p.irl").rename(folder / "p.irdata")
+    done = command("run", "p.irdata", "--cell", "p.toml")
+    assert done.returncode == 2
+    assert "IRL005" in done.stderr
+    assert names(folder) == ["p.irdata", "p.toml"]
+
+
+@pytest.mark.parametrize("arguments", [[], ["fly"], ["run"], ["run", "p.irl", "--tick", "fast"], ["run", "--x"]])
+def test_usage_errors(folder, monkeypatch, capsys, arguments):
+    from irlx.cli.main import main
+
+    monkeypatch.chdir(folder)
+    with pytest.raises(SystemExit) as caught:
+        main(arguments)
+    out, err = capsys.readouterr()
+    assert (caught.value.code, out) == (2, "")
+    assert err.startswith("usage: irlx")
+
+
+@pytest.mark.xfail(strict=True, reason="a file that is no stream by its ending exits with 1, not 2")
+def test_verifying_what_is_no_stream(folder, monkeypatch, capsys):
+    from irlx.cli.main import main
+
+    monkeypatch.chdir(folder)
+    assert main(["verify", "p.irl"]) == 2
+    assert "IRL707" in capsys.readouterr().err
+
+
+@pytest.fixture
+def unprivileged(environment):
+    """Arguments for a subprocess that file modes bind; root is not bound by them."""
+    who = {"user": 65534, "group": 65534, "extra_groups": []} if os.geteuid() == 0 else {}
+    probe = [sys.executable, "-c", "import irlx"]
+    if subprocess.run(probe, env=environment, cwd="/", capture_output=True, check=False, **who).returncode:
+        pytest.skip("an unprivileged user cannot start this Python")
+    return who
+
+
+@pytest.fixture
+def open_folder():
+    """A folder that other users can look into, with p.irl and p.toml; and one beside it to work in."""
+    with tempfile.TemporaryDirectory(prefix="irlx-") as name:
+        parent = Path(name)
+        (parent / "programs").mkdir()
+        (parent / "elsewhere").mkdir()
+        parent.chmod(0o755)
+        (parent / "elsewhere").chmod(0o777)
+        yield parent
+        (parent / "programs").chmod(0o755)
+
+
+@pytest.mark.req("QA-09")
+def test_a_folder_without_write_permission(command, folder, names, unprivileged, open_folder):
+    programs, elsewhere = open_folder / "programs", open_folder / "elsewhere"
+    for name in UNCHANGED:
+        write(programs, name, (folder / name).read_bytes())
+    programs.chmod(0o555)
+    done = command("run", programs / "p.irl", "--quiet", cwd=elsewhere, **unprivileged)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    assert names(elsewhere) == ["p.irdata"]
+    done = command("run", programs / "p.irl", "-o", programs / "p.csv", cwd=elsewhere, **unprivileged)
+    assert done.returncode == 2
+    assert done.stderr.startswith(f"error IRL003: cannot write {programs / 'p.csv'}: permission denied")
+    assert names(programs) == UNCHANGED

@@ -1,0 +1,181 @@
+"""Least-norm problems with bounds on rows, against DAQP, the optimality conditions and linear programs."""
+
+from __future__ import annotations
+
+import daqp
+import numpy as np
+import pytest
+from scipy.optimize import linprog
+
+from irlx.transform.qp.active_set import sharpen
+from irlx.transform.qp.interval import IntervalSolver
+from irlx.transform.qp.proxqp import ProxQpSolver
+
+pytestmark = pytest.mark.req("TRF-01")
+
+KINDS = ["free", "few", "many", "degenerate", "duplicate", "zero rows", "tiny", "one sided"]
+
+
+def random_problem(seed: int, r: int, kind: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Rows and bounds of a problem that has a solution: an inner point is chosen first."""
+    rng = np.random.default_rng([seed, r, KINDS.index(kind)])
+    n = r + 6
+    rows = rng.normal(size=(n, r))
+    inner = rng.normal(size=r) * {"free": 0.0, "few": 0.3}.get(kind, 1.0)
+    if kind == "duplicate":
+        rows[1], rows[3] = rows[0], -rows[0]
+    if kind == "zero rows":
+        rows[[0, n - 1]] = 0.0
+    reached = rows @ inner
+    below, above = rng.uniform(0.01, 1.0, (2, n))
+    if kind in ("degenerate", "duplicate"):
+        # More rows than unknowns meet in the inner point.
+        tight = rng.random(n) < 0.7
+        below[tight] = above[tight] = 0.0
+        above[rng.random(n) < 0.5] = 0.5
+    lower, upper = reached - below, reached + above
+    if kind == "one sided":
+        lower[rng.random(n) < 0.5] = -np.inf
+        upper[rng.random(n) < 0.5] = np.inf
+    scale = 1e-7 if kind == "tiny" else 1.0
+    return rows, lower * scale, upper * scale
+
+
+def by_daqp(rows: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> np.ndarray | None:
+    """DAQP's solution on the problem scaled to a violation of one, None where it finds it infeasible."""
+    r = rows.shape[1]
+    scale = max(float(np.max(lower)), float(np.max(-upper)), 0.0)
+    if scale == 0.0:
+        return np.zeros(r)
+    low, up = np.maximum(lower / scale, -1e30), np.minimum(upper / scale, 1e30)
+    sense = np.zeros(rows.shape[0], dtype=np.int32)
+    options = {"primal_tol": 1e-11, "dual_tol": 1e-12}
+    matrix = np.ascontiguousarray(rows)
+    z, _, flag, _ = daqp.solve(np.eye(r), np.zeros(r), matrix, up, low, sense, **options)
+    return scale * np.asarray(z) if flag >= 1 else None
+
+
+def assert_optimal(rows, lower, upper, solution, where: str) -> None:
+    """Feasible, and z is a combination of active rows that all push inwards (sufficient, as z is convex)."""
+    z, active = solution.z, solution.active
+    size = max(float(np.max(np.abs(z))), 1e-12)
+    assert np.all(rows @ z <= upper + 1e-9 * max(1.0, size)), where
+    assert np.all(rows @ z >= lower - 1e-9 * max(1.0, size)), where
+    held = np.flatnonzero(active)
+    multipliers, *_ = np.linalg.lstsq(rows[held].T, z, rcond=None)
+    np.testing.assert_allclose(rows[held].T @ multipliers, z, atol=1e-9 * size, err_msg=where)
+    bound = np.where(active > 0, upper, lower)[held]
+    np.testing.assert_allclose(rows[held] @ z, bound, atol=1e-10 * max(1.0, size), err_msg=where)
+    if held.size and np.linalg.matrix_rank(rows[held]) == held.size:
+        assert np.all(multipliers * active[held] <= 1e-8 * size), where
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("r", [2, 3, 5, 8])
+def test_proxqp_with_sharpened_active_set_equals_daqp(r: int, kind: str) -> None:
+    solver = ProxQpSolver()
+    for seed in range(25):
+        rows, lower, upper = random_problem(seed, r, kind)
+        solution = solver.solve(rows, lower, upper)
+        where = f"seed {seed}, r {r}, {kind}"
+        assert solution.z is not None, where
+        wanted = by_daqp(rows, lower, upper)
+        assert wanted is not None, where
+        size = max(float(np.max(np.abs(wanted))), 1e-30)
+        np.testing.assert_allclose(solution.z, wanted, atol=2e-8 * size, err_msg=where)
+        assert_optimal(rows, lower, upper, solution, where)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_interval_equals_daqp(kind: str) -> None:
+    for seed in range(60):
+        rows, lower, upper = random_problem(seed, 1, kind)
+        solution = IntervalSolver().solve(rows, lower, upper)
+        where = f"seed {seed}, {kind}"
+        assert solution.z is not None, where
+        wanted = by_daqp(rows, lower, upper)
+        assert solution.z == pytest.approx(wanted, abs=1e-9 * max(1e-7, abs(float(wanted[0])))), where
+        assert_optimal(rows, lower, upper, solution, where)
+
+
+def infeasible(seed: int, r: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Random rows, one combination of which would have to be two things at once."""
+    rng = np.random.default_rng([seed, r])
+    rows, lower, upper = random_problem(seed, r, "many")
+    mix = rng.normal(size=r + 1)
+    rows[-1] = mix @ rows[: r + 1]
+    reach = np.sum(np.where(mix > 0, mix * upper[: r + 1], mix * lower[: r + 1]))
+    lower[-1], upper[-1] = reach + rng.choice([1e-3, 0.1, 5.0]), np.inf
+    return rows, lower, upper
+
+
+@pytest.mark.parametrize("r", [1, 2, 5])
+def test_contradicting_rows_have_no_solution(r: int) -> None:
+    solver = IntervalSolver() if r == 1 else ProxQpSolver()
+    for seed in range(25):
+        rows, lower, upper = infeasible(seed, r)
+        finite = np.isfinite(upper)
+        check = linprog(
+            np.zeros(r),
+            A_ub=np.vstack([rows[finite], -rows]),
+            b_ub=np.concatenate([upper[finite], -lower]),
+            bounds=(None, None),
+        )
+        assert check.status == 2, f"seed {seed}: the test's own problem has a solution"
+        solution = solver.solve(rows, lower, upper)
+        assert solution.z is None, f"seed {seed}, r {r}: {solution}"
+
+
+@pytest.mark.parametrize("r", [1, 3])
+def test_row_with_crossed_bounds_or_without_effect_has_no_solution(r: int) -> None:
+    solver = IntervalSolver() if r == 1 else ProxQpSolver()
+    rows, lower, upper = random_problem(1, r, "free")
+    crossed = lower.copy()
+    crossed[2] = upper[2] + 0.5
+    assert solver.solve(rows, crossed, upper).z is None
+    rows[2], lower[2], upper[2] = 0.0, 0.1, 0.2
+    assert solver.solve(rows, lower, upper).z is None
+
+
+def test_interval_clips_where_a_row_cuts() -> None:
+    rows, infinite = np.array([[2.0], [-1.0], [0.0]]), np.full(3, np.inf)
+    solution = IntervalSolver().solve(rows, np.array([1.0, -np.inf, -1.0]), infinite)
+    assert solution.z.tolist() == [0.5]
+    assert solution.active.tolist() == [-1, 0, 0]
+    solution = IntervalSolver().solve(rows, -infinite, np.array([np.inf, -3.0, 0.0]))
+    assert solution.z.tolist() == [3.0]
+    assert solution.active.tolist() == [0, 1, 0]
+
+
+@pytest.mark.parametrize("wrong", ["nothing", "all lower", "opposite", "random"])
+def test_any_guess_of_the_active_set_leads_to_the_optimum(wrong: str) -> None:
+    rng = np.random.default_rng(9)
+    found = 0
+    for seed in range(60):
+        rows, lower, upper = random_problem(seed, 4, "few")
+        wanted = by_daqp(rows, lower, upper)
+        guess = np.zeros(10, dtype=np.int8)
+        if wrong == "all lower":
+            guess[:4] = -1
+        elif wrong == "opposite":
+            guess[np.flatnonzero(rows @ wanted >= upper - 1e-9)[:2]] = -1
+        elif wrong == "random":
+            guess[rng.choice(10, 3, replace=False)] = rng.choice([-1, 1], 3)
+        solution = sharpen(rows, lower, upper, guess)
+        if solution is not None:
+            found += 1
+            np.testing.assert_allclose(solution.z, wanted, atol=1e-9, err_msg=f"seed {seed}")
+    assert found >= 54
+
+
+def test_a_solver_used_before_gives_the_same_answer_again() -> None:
+    """The workspace is kept between calls; what it solved before must not show in the bytes."""
+    rows, lower, upper = random_problem(3, 5, "many")
+    fresh = ProxQpSolver().solve(rows, lower, upper)
+    used = ProxQpSolver()
+    for seed in range(10, 20):
+        used.solve(*random_problem(seed, 5, "degenerate"))
+        used.solve(*infeasible(seed, 5))
+    again = used.solve(rows, lower, upper)
+    np.testing.assert_array_equal(again.z, fresh.z)
+    np.testing.assert_array_equal(again.active, fresh.active)
