@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from irlx._version import __version__
-from irlx.blocks import Block, HaltBlock, Origin, Question
+from irlx.blocks import Block, Origin, Question
 from irlx.cell.cell import Cell
 from irlx.cell.load import find_cell, load_cell
 from irlx.diagnostics import Diagnostic, IrlxError, Place, Span, report
@@ -87,22 +87,6 @@ def setting_of(cell: Cell) -> Setting:
     return Setting(cell.robot.joint_names, tuple(axis.is_prismatic for axis in axes), defaults, poses)
 
 
-def blocks(job: Job) -> Iterator[Block]:
-    """Blocks of a program without moving a robot; a posture that it asks for is the start posture."""
-    source = interpret(job.program.tree, job.program.source, setting_of(job.cell))
-    answer = None
-    while True:
-        try:
-            item = source.send(answer)
-        except StopIteration:
-            return
-        answer = None
-        if isinstance(item, Question):
-            answer = tuple(float(value) for value in job.cell.start)
-        else:
-            yield item
-
-
 @dataclass(frozen=True)
 class Executed:
     """A block, the tick whose row stood when it began, and the rows it became (None for none)."""
@@ -113,7 +97,7 @@ class Executed:
 
 
 class Execution:
-    """One run in progress: an iterator of executed blocks over one pacer."""
+    """One run in progress: a program's blocks, and the pacer that executes them."""
 
     def __init__(self, job: Job) -> None:
         self.job = job
@@ -124,22 +108,37 @@ class Execution:
 
     def __iter__(self) -> Iterator[Executed]:
         """Execute the program block by block. Raises IrlxError where it cannot go on."""
-        job, pacer = self.job, self._pacer
+        for block in self._blocks(self._pacer.answer):
+            tick = self._pacer.tick
+            yield Executed(block, tick, self._pacer.execute(block))
+
+    def blocks(self) -> Iterator[Block]:
+        """Blocks of the program; nothing moves until it asks for the posture that its moves lead to."""
+        waiting: list[Block] = []
+
+        def answer(question: Question) -> tuple[float, ...]:
+            for block in waiting:
+                self._pacer.execute(block)
+            waiting.clear()
+            return self._pacer.answer(question)
+
+        for block in self._blocks(answer):
+            yield block
+            waiting.append(block)
+
+    def _blocks(self, answer: Callable[[Question], tuple[float, ...]]) -> Iterator[Block]:
+        """Blocks as the interpreter yields them, its questions answered on the way."""
+        job = self.job
         source = interpret(job.program.tree, job.program.source, setting_of(job.cell))
-        answer = None
+        reply = None
         while True:
             try:
-                item = source.send(answer)
+                item = source.send(reply)
             except StopIteration:
                 return
-            answer = None
-            if isinstance(item, Question):
-                answer = pacer.answer(item)
-                continue
-            tick = pacer.tick
-            yield Executed(item, tick, pacer.execute(item))
-            if isinstance(item, HaltBlock):
-                return
+            reply = answer(item) if isinstance(item, Question) else None
+            if isinstance(item, Block):
+                yield item
 
     @property
     def warnings(self) -> list[Diagnostic]:

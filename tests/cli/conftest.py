@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import irlx
+from irlx.cli.main import main
 
 CELL = """[robot]
 model = "koch11"
@@ -76,6 +77,20 @@ def command(folder, environment):
         assert "IRL090" not in done.stderr
         assert "\x1b" not in done.stdout + done.stderr
         return done
+
+    return run
+
+
+@pytest.fixture
+def inside(folder, monkeypatch, capsys):
+    """Like `command`, without the start of a process: exit code, stdout, stderr."""
+
+    def run(*arguments):
+        monkeypatch.chdir(folder)
+        code = main([str(argument) for argument in arguments])
+        out, err = capsys.readouterr()
+        assert "IRL090" not in err
+        return subprocess.CompletedProcess(arguments, code, out, err)
 
     return run
 

@@ -1,6 +1,6 @@
 """What users get wrong: a code, a place, an exit code, nothing left behind, never a traceback."""
 
-import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-CELL_END = "[motion]"
+from irlx.cli.main import main
+
 UNCHANGED = ["p.irl", "p.toml"]
 
 
@@ -28,14 +29,14 @@ SYNTAX = [
 
 @pytest.mark.req("QA-09")
 @pytest.mark.parametrize(("content", "code", "words"), SYNTAX)
-def test_programs_that_cannot_be_read(command, folder, names, content, code, words):
+def test_programs_that_cannot_be_read(command, inside, folder, names, content, code, words):
     write(folder, "p.irl", content)
     done = command("run", "p.irl")
     assert done.returncode == code
     assert words in done.stderr
     assert done.stdout == ""
     assert names(folder) == UNCHANGED
-    checked = command("check", "p.irl")
+    checked = inside("check", "p.irl")
     assert checked.returncode == code
     assert words in checked.stderr
     assert checked.stdout == "p.irl: 1 error, 0 warnings\n"
@@ -43,28 +44,34 @@ def test_programs_that_cannot_be_read(command, folder, names, content, code, wor
 
 @pytest.mark.req("QA-09")
 @pytest.mark.parametrize("verb", ["run", "check", "blocks"])
-def test_a_missing_program(command, folder, names, verb):
-    done = command(verb, "q.irl")
+def test_a_missing_program(inside, folder, names, verb):
+    done = inside(verb, "q.irl")
     assert done.returncode == 2
     assert done.stderr.startswith("error IRL001: no such file: q.irl; did you mean 'p.irl'?\n")
     assert names(folder) == UNCHANGED
 
 
 @pytest.mark.req("QA-09")
-def test_a_folder_is_no_program(command):
-    done = command("check", ".")
+def test_a_folder_is_no_program(inside):
+    done = inside("check", ".")
     assert done.returncode == 2
     assert done.stderr == "error IRL007: . is a folder, not a file\n"
 
 
 CELLS = [
     ("[robot\n", "p.toml: error IRL601: the cell file is not TOML: "),
-    ("[robot]\nmodel = 'koch12'\n", "p.toml: robot.model: error IRL611: no robot 'koch12'; did you mean 'koch11'?"),
+    (
+        "[robot]\nmodel = 'koch12'\n",
+        "p.toml: robot.model: error IRL611: no robot 'koch12'; did you mean 'koch11'?",
+    ),
     (
         "[robot]\nmodel = 'koch11'\nstart = [0, 95, -102, 146, -80, -8, 55, 24, 106, -400, 58]\n",
         "p.toml: robot.start[2]: error IRL620: joint_2 starts at 95 deg, outside its limits",
     ),
-    ("[robot]\nmodel = 'koch11'\nstrat = []\n", "p.toml: robot.strat: error IRL602: no such key: robot.strat; did you"),
+    (
+        "[robot]\nmodel = 'koch11'\nstrat = []\n",
+        "p.toml: robot.strat: error IRL602: no such key: robot.strat; did you",
+    ),
     (None, "p.irl: error IRL609: no cell file found; tried p.toml"),
 ]
 
@@ -72,12 +79,12 @@ CELLS = [
 @pytest.mark.req("QA-09")
 @pytest.mark.req("CELL-01")
 @pytest.mark.parametrize(("content", "words"), CELLS)
-def test_cells_that_cannot_be_used(command, folder, names, content, words):
+def test_cells_that_cannot_be_used(inside, folder, names, content, words):
     (folder / "p.toml").unlink()
     if content is not None:
         write(folder, "p.toml", content)
     before = names(folder)
-    done = command("run", "p.irl")
+    done = inside("run", "p.irl")
     assert done.returncode == 2
     assert words in done.stderr
     assert done.stdout == ""
@@ -87,9 +94,17 @@ def test_cells_that_cannot_be_used(command, folder, names, content, words):
 LIMITS = """MAIN_JOINT_MIN: lo := (-180, -150, -180, 0, -180, -180, -180, -60, -180, -500, {});
 MAIN_JOINT_MAX: hi := (180, 0, 0, 180, 0, 0, 180, 60, 180, 500, {});"""
 RUNS = [
-    (LIMITS.format(60, 0), "JOINTLIMIT lo, hi;", "IRL340: JOINTLIMIT: the lower bound 60 deg of joint_11"),
-    (LIMITS.format(0, 20), "JOINTLIMIT lo, hi;", "IRL345: joint_11 stands at 58.9879 deg, above the bound 20 deg"),
-    ("", "FREEZESTART 1, 2, 3, 4, 5, 6;", "IRL347: 6 joints are frozen, but a robot of 11 joints can spare 5"),
+    (LIMITS.format(60, 0), "JOINTLIMIT lo, hi;", "IRL340: JOINTLIMIT: the lower bound"),
+    (
+        LIMITS.format(0, 20),
+        "JOINTLIMIT lo, hi;",
+        "IRL345: joint_11 stands at 58.9879 deg, above the bound 20 deg",
+    ),
+    (
+        "",
+        "FREEZESTART 1, 2, 3, 4, 5, 6;",
+        "IRL347: 6 joints are frozen, but a robot of 11 joints can spare 5",
+    ),
     ("", "FREEZESTART 12;", "IRL346: FREEZESTART names joint 12; the robot has joints 1 to 11"),
     ("", "MOVE LIN POSITION(11400, 1000, 1 / 0);", "IRL502: division by zero"),
     ("", "PAUSE;", "IRL590: this version of irlx reads PAUSE but does not execute it yet"),
@@ -99,10 +114,10 @@ RUNS = [
 @pytest.mark.req("QA-09")
 @pytest.mark.req("LANG-72")
 @pytest.mark.parametrize(("declarations", "statement", "words"), RUNS)
-def test_programs_that_the_robot_cannot_execute(command, folder, names, declarations, statement, words):
+def test_programs_that_the_robot_cannot_execute(inside, folder, names, declarations, statement, words):
     text = f"PROGRAM p;\nVAR REAL: x; {' '.join(declarations.split())}\nBEGIN\n  {statement}\nENDPROGRAM\n"
     write(folder, "p.irl", text)
-    done = command("run", "p.irl", "--quiet")
+    done = inside("run", "p.irl", "--quiet")
     assert done.returncode == 1
     place, _, message = done.stderr.splitlines()[0].partition(" error ")
     assert place.startswith("p.irl:4:")
@@ -112,7 +127,7 @@ def test_programs_that_the_robot_cannot_execute(command, folder, names, declarat
 
 @pytest.mark.req("QA-09")
 @pytest.mark.req("LANG-72")
-def test_a_pose_out_of_reach_in_the_third_move(command, folder, names):
+def test_a_pose_out_of_reach_in_the_third_move(command, inside, folder, names):
     text = """PROGRAM p;
 VAR POSITION: near := (11400, 1000, 3500);
 BEGIN
@@ -133,7 +148,7 @@ ENDPROGRAM
     # The asked names only ever hold complete streams.
     assert names(folder) == ["out.partial.csv", "out.partial.irdata", *UNCHANGED]
     assert "marked incomplete: out.partial.irdata" in done.stderr
-    verified = command("verify", "out.partial.irdata", "--cell", "p.toml")
+    verified = inside("verify", "out.partial.irdata", "--cell", "p.toml")
     assert verified.returncode == 1
     failed = [line.split()[0] for line in verified.stdout.splitlines() if " failed" in line]
     assert failed == ["complete"]
@@ -156,33 +171,28 @@ OUTPUTS = [
 
 @pytest.mark.req("QA-09")
 @pytest.mark.parametrize(("options", "words"), OUTPUTS)
-def test_options_that_cannot_be(folder, names, monkeypatch, capsys, options, words):
-    from irlx.cli.main import main
-
+def test_options_that_cannot_be(inside, folder, names, options, words):
     (folder / "link.csv").symlink_to("p.irl")
     (folder / "folder.csv").mkdir()
-    monkeypatch.chdir(folder)
-    assert main(["run", "p.irl", *options]) == 2
-    out, err = capsys.readouterr()
-    assert out == ""
-    assert err.startswith(f"error {words}")
+    done = inside("run", "p.irl", *options)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith(f"error {words}")
     assert names(folder) == ["folder.csv", "link.csv", *UNCHANGED]
 
 
 @pytest.mark.req("QA-09")
-def test_the_default_output_is_no_input(command, folder, names):
+def test_the_default_output_is_no_input(inside, folder, names):
     (folder / "p.irl").rename(folder / "p.irdata")
-    done = command("run", "p.irdata", "--cell", "p.toml")
+    done = inside("run", "p.irdata", "--cell", "p.toml")
     assert done.returncode == 2
     assert "IRL005" in done.stderr
     assert names(folder) == ["p.irdata", "p.toml"]
 
 
-@pytest.mark.parametrize("arguments", [[], ["fly"], ["run"], ["run", "p.irl", "--tick", "fast"], ["run", "--x"]])
-def test_usage_errors(folder, monkeypatch, capsys, arguments):
-    from irlx.cli.main import main
-
-    monkeypatch.chdir(folder)
+@pytest.mark.parametrize(
+    "arguments", [[], ["fly"], ["run"], ["run", "p.irl", "--tick", "fast"], ["run", "--x"]]
+)
+def test_usage_errors(capsys, arguments):
     with pytest.raises(SystemExit) as caught:
         main(arguments)
     out, err = capsys.readouterr()
@@ -191,47 +201,47 @@ def test_usage_errors(folder, monkeypatch, capsys, arguments):
 
 
 @pytest.mark.xfail(strict=True, reason="a file that is no stream by its ending exits with 1, not 2")
-def test_verifying_what_is_no_stream(folder, monkeypatch, capsys):
-    from irlx.cli.main import main
+def test_verifying_what_is_no_stream(inside):
+    done = inside("verify", "p.irl")
+    assert "IRL707" in done.stderr
+    assert done.returncode == 2
 
-    monkeypatch.chdir(folder)
-    assert main(["verify", "p.irl"]) == 2
-    assert "IRL707" in capsys.readouterr().err
+
+UNPRIVILEGED = """
+import os, sys
+from irlx.cli.main import main
+program, elsewhere = sys.argv[1:]
+os.chdir(elsewhere)
+# Loads everything that a run needs, for another user may not be allowed to read it.
+assert main(["run", program, "-o", "first.csv", "--quiet"]) == 0
+if os.geteuid() == 0:
+    os.setgroups([])
+    os.setgid(65534)
+    os.setuid(65534)
+print(main(["run", program, "--quiet"]), flush=True)
+print(main(["run", program, "-o", program.replace(".irl", ".csv"), "--quiet"]), flush=True)
+"""
 
 
 @pytest.fixture
-def unprivileged(environment):
-    """Arguments for a subprocess that file modes bind; root is not bound by them."""
-    who = {"user": 65534, "group": 65534, "extra_groups": []} if os.geteuid() == 0 else {}
-    probe = [sys.executable, "-c", "import irlx"]
-    if subprocess.run(probe, env=environment, cwd="/", capture_output=True, check=False, **who).returncode:
-        pytest.skip("an unprivileged user cannot start this Python")
-    return who
-
-
-@pytest.fixture
-def open_folder():
-    """A folder that other users can look into, with p.irl and p.toml; and one beside it to work in."""
+def shared():
+    """A folder that every user can look into."""
     with tempfile.TemporaryDirectory(prefix="irlx-") as name:
-        parent = Path(name)
-        (parent / "programs").mkdir()
-        (parent / "elsewhere").mkdir()
-        parent.chmod(0o755)
-        (parent / "elsewhere").chmod(0o777)
-        yield parent
-        (parent / "programs").chmod(0o755)
+        Path(name).chmod(0o755)
+        yield Path(name)
 
 
 @pytest.mark.req("QA-09")
-def test_a_folder_without_write_permission(command, folder, names, unprivileged, open_folder):
-    programs, elsewhere = open_folder / "programs", open_folder / "elsewhere"
-    for name in UNCHANGED:
-        write(programs, name, (folder / name).read_bytes())
+def test_a_folder_without_write_permission(folder, environment, names, shared):
+    programs, elsewhere = shared / "programs", shared / "elsewhere"
+    shutil.copytree(folder, programs)
+    elsewhere.mkdir()
+    elsewhere.chmod(0o777)
     programs.chmod(0o555)
-    done = command("run", programs / "p.irl", "--quiet", cwd=elsewhere, **unprivileged)
-    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
-    assert names(elsewhere) == ["p.irdata"]
-    done = command("run", programs / "p.irl", "-o", programs / "p.csv", cwd=elsewhere, **unprivileged)
-    assert done.returncode == 2
+    arguments = [sys.executable, "-c", UNPRIVILEGED, programs / "p.irl", elsewhere]
+    done = subprocess.run(arguments, env=environment, capture_output=True, text=True, check=True, timeout=60)
+    programs.chmod(0o755)
+    assert done.stdout == "0\n2\n"
     assert done.stderr.startswith(f"error IRL003: cannot write {programs / 'p.csv'}: permission denied")
+    assert names(elsewhere) == ["first.csv", "p.irdata"]
     assert names(programs) == UNCHANGED

@@ -11,6 +11,7 @@ SHARE = "speed_ptp 100 % acc_ptp 100 %"
 
 
 @pytest.mark.req("LANG-50")
+@pytest.mark.req("LANG-69")
 @pytest.mark.parametrize(
     ("statement", "expected"),
     [
@@ -19,6 +20,7 @@ SHARE = "speed_ptp 100 % acc_ptp 100 %"
         ("MOVE PTP (1, 2, 3);", f"1 MOVE PTP to (1 2 3) kept in R_BASE {SHARE} line 4"),
         ("MOVE PTP (1, 2, 3, 4);", f"1 MOVE PTP to joints (1 2 3 4) {SHARE} line 4"),
         ("MOVE PTP R_JOINT_ACT;", f"1 MOVE PTP to joints (0 0 0 0) {SHARE} line 4"),
+        ("MOVE LIN (1, 2, 3, 4);", f"1 MOVE LIN to joints (1 2 3 4) {LAW} line 4"),
         ("CYCLICSTART;", "1 CYCLICSTART line 4"),
         ("CYCLICEND;", "1 CYCLICEND line 4"),
         ("FREEZESTART 2, 1 + 2;", "1 FREEZESTART 2, 3 line 4"),

@@ -112,12 +112,6 @@ def test_types(run_error, type):
     assert message == f"this version of irlx reads the type {type} but does not execute it yet"
 
 
-def test_line_to_a_posture(run_error):
-    code, message, text = run_error("", "MOVE LIN (1, 2, 3, 4, 5, 6, 7);")
-    assert (code, text) == ("IRL590", "(1, 2, 3, 4, 5, 6, 7)")
-    assert "LIN to a joint target" in message
-
-
 def test_what_is_executed_is_not_warned_about():
     declarations = START + "CONST ORIENTATION: o := ORIZYX(1, 2, 3); TYPE RECORD REAL: a; ENDRECORD = one;"
     body = """i := 2; MOVE LIN p SPEED := 3 WITH JOINTLIMIT j, j; MOVE PTP R_JOINT_ACT; FREEZESTART 1;

@@ -105,3 +105,24 @@ def test_buffers_do_not_leak_between_calls(random_robot) -> None:
     kinematics.difference(second, kinematics.target(*kept))
     np.testing.assert_array_equal(kept[0], copies[0])
     np.testing.assert_array_equal(kept[1], copies[1])
+
+
+def test_derivative_of_the_pose_difference_equals_central_differences(random_robot) -> None:
+    kinematics = built(random_robot)
+    rng = np.random.default_rng(11)
+    h = 1e-6
+    for turn in (0.0, 1e-9, 0.7, 2.5):
+        q = rng.uniform(-2.0, 2.0, len(random_robot.axes))
+        rotation, position = random_robot.tool_pose(q)
+        axis = rng.normal(size=3)
+        rotation = rotation @ Rotation.from_rotvec(turn * axis / np.linalg.norm(axis)).as_matrix()
+        target = kinematics.target(rotation, position + rng.normal(size=3) * min(turn, 1.0))
+        _, derivative = kinematics.difference_derivative(q, target)
+        derivative = derivative.copy()
+        for joint in range(q.size):
+            step = np.zeros(q.size)
+            step[joint] = h
+            after, before = (kinematics.difference(p, target)[0].copy() for p in (q + step, q - step))
+            wanted = (after - before) / (2 * h)
+            message = f"joint {joint}, turn {turn}, q = {q!r}"
+            np.testing.assert_allclose(derivative[:, joint], wanted, atol=1e-6, err_msg=message)

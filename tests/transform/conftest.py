@@ -49,6 +49,11 @@ class Arm:
     def n(self) -> int:
         return self.q.size
 
+    @property
+    def size(self) -> float:
+        """Reach in m, at least one."""
+        return max(1.0, self.kinematics.description.reach)
+
     def bounds(self, half: float | np.ndarray, q: np.ndarray | None = None) -> StepBounds:
         """Step bounds +-half, cut by the position limits."""
         q = self.q if q is None else q

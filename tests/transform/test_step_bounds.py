@@ -122,7 +122,7 @@ def check(rows: np.ndarray, limits: JointLimits, dt: float, where: str) -> None:
 
 LOWER_WALL = pytest.mark.xfail(
     strict=True,
-    reason="_intersect heals a rounding conflict at a lower limit by breaking the braking bound, tick after tick",
+    reason="a rounding conflict at a lower limit is healed by breaking the braking bound",
 )
 
 
@@ -131,7 +131,7 @@ LOWER_WALL = pytest.mark.xfail(
 @pytest.mark.parametrize("dt", TICKS)
 @pytest.mark.parametrize("wall", ["upper", pytest.param("lower", marks=LOWER_WALL)])
 def test_largest_steps_towards_a_limit_never_run_out_of_room(wall: str, dt: float) -> None:
-    """400 joints take the largest step towards their limit, with spells of others: no interval is ever empty."""
+    """400 joints take the largest step towards their limit, with spells of others: no empty interval."""
     rng = np.random.default_rng(int(dt * 1e6))
     n = 400
     limit = rng.uniform(0.0, 3.0, n) * rng.choice([0.0, 1.0, 1.0, 1.0], n)

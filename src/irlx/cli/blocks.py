@@ -26,11 +26,11 @@ def command(options: argparse.Namespace) -> int:
     """Print one line a block on stdout."""
     from irlx.blocks.text import block_text
     from irlx.cli.output import print_diagnostics
-    from irlx.pipeline import blocks, header_of, prepare
+    from irlx.pipeline import Execution, header_of, prepare
 
     job = prepare(options.program, options.cell)
     print_diagnostics(job.program.diagnostics)
     units = header_of(job).joint_units
-    for block in blocks(job):
+    for block in Execution(job).blocks():
         print(block_text(block, units))
     return 0

@@ -1,0 +1,102 @@
+"""The pages of the codes of command line, types, pacing, run and cell: what they show is what irlx says."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+import irlx
+from irlx.cli.main import main
+from irlx.diagnostics.codes.cell import CELL
+from irlx.diagnostics.codes.command import COMMAND
+from irlx.diagnostics.codes.pacing import PACING
+from irlx.diagnostics.codes.run import RUN
+from irlx.diagnostics.codes.types import TYPES
+
+PAGES = Path(__file__).parents[2] / "docs" / "diagnostics"
+CODES = [code.id for group in (COMMAND, TYPES, PACING, RUN, CELL) for code in group]
+IN_WORDS = {"IRL090", "IRL229", "IRL523"}
+"""Codes that no small program for the packaged robot brings about: their pages say so in words."""
+
+PLAIN_PROGRAM = "PROGRAM demo;\nBEGIN\n  MOVE LIN POSITION(11400, 1000, 3500);\nENDPROGRAM\n"
+PLAIN_CELL = """[robot]
+model = "koch11"
+[robot.limits]
+position = [180, [-150, 0], [-180, 0], [0, 180], [-180, 0], [-180, 0], 180, 60, 180, 500, [-20, 60]]
+speed = [100, 100, 100, 100, 100, 100, 100, 100, 100, 1000, 100]
+acceleration = [500, 500, 500, 500, 500, 500, 500, 500, 500, 5000, 500]
+[motion]
+tick_ms = 20
+"""
+
+
+def page_of(code):
+    return (PAGES / f"{code}.md").read_text(encoding="utf-8")
+
+
+def section(code, title):
+    found = re.search(rf"^## {title}\n(.*?)(?=^## |\Z)", page_of(code), re.MULTILINE | re.DOTALL)
+    return found[1] if found else ""
+
+
+def fence(text, kind):
+    found = re.search(rf"^```{kind}\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    return found[1] if found else None
+
+
+def diagnostics_of(folder, text):
+    """Everything that check and run say of the program and the cell in a section of a page."""
+    program, cell = folder / "demo.irl", folder / "demo.toml"
+    program.write_text(fence(text, "irl") or PLAIN_PROGRAM, encoding="utf-8")
+    cell.write_text(fence(text, "toml") or PLAIN_CELL, encoding="utf-8")
+    found = list(irlx.check(program, cell=cell))
+    try:
+        found += irlx.run(program, cell=cell).diagnostics
+    except irlx.IrlxError as error:
+        found += error.diagnostics
+    return found
+
+
+@pytest.mark.req("LANG-70")
+@pytest.mark.parametrize("code", CODES)
+def test_page(code):
+    page = page_of(code)
+    assert page.startswith(f"# {code}: ")
+    assert len(page.splitlines()) <= 50
+    shown = bool(section(code, "Bad") and section(code, "Repaired"))
+    assert shown or section(code, "Example")
+    assert shown or "```console" in page or code in IN_WORDS
+
+
+SHOWN = [code for code in CODES if section(code, "Bad")]
+
+
+@pytest.mark.req("LANG-70")
+@pytest.mark.parametrize("code", SHOWN)
+def test_bad_is_reported_and_repaired_is_clean(tmp_path, code):
+    bad = diagnostics_of(tmp_path, section(code, "Bad"))
+    assert code in {d.code for d in bad}
+    # Nothing else is wrong there, apart from what the same mistake makes the check say.
+    companions = {"IRL590", "IRL591", "IRL621"} | ({"IRL609"} if code == "IRL008" else set())
+    assert {d.code for d in bad if d.is_error} <= {code, *companions}
+    repaired = diagnostics_of(tmp_path, section(code, "Repaired"))
+    assert [str(d) for d in repaired] == []
+
+
+CONSOLE = [code for code in CODES if "```console" in page_of(code)]
+
+
+@pytest.mark.req("LANG-70")
+@pytest.mark.parametrize("code", CONSOLE)
+def test_examples_on_the_command_line(tmp_path, monkeypatch, capsys, code):
+    monkeypatch.chdir(tmp_path)
+    for name in ("p.irl", "p.csv", "lonely.irl"):
+        (tmp_path / name).write_text(PLAIN_PROGRAM, encoding="utf-8")
+    (tmp_path / "p.toml").write_text(PLAIN_CELL, encoding="utf-8")
+    before = sorted(tmp_path.iterdir())
+    command, *expected = fence(section(code, "Example"), "console").splitlines()
+    assert command.startswith("$ irlx ")
+    assert code in expected[0]
+    assert main(command.split()[2:]) == 2
+    assert capsys.readouterr().err.splitlines()[: len(expected)] == expected
+    assert sorted(tmp_path.iterdir()) == before

@@ -1,0 +1,96 @@
+"""The order of the house: who may import whom, and how long a module or function may be."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+SOURCE = Path(__file__).parents[1] / "src" / "irlx"
+ORDER = (
+    "diagnostics",
+    "language",
+    "blocks",
+    "robot",
+    "scene",
+    "interpreter",
+    "motion",
+    "transform",
+    "pacing",
+    "cell",
+    "streams",
+    "report",
+    "cli",
+)
+"""Folders of the package; each may import from those before it and from itself."""
+WIRING = {"pipeline", "program", "checking", "verification"}
+"""Modules that wire stages together: only the command line, the package itself and they import them."""
+ANYWHERE = {"_version"}
+
+MOST_LINES = 450
+LONGEST_FUNCTION = 60
+
+MODULES = sorted(SOURCE.rglob("*.py"))
+
+
+def name_of(path):
+    return path.relative_to(SOURCE).as_posix()
+
+
+def imported_modules(path):
+    """Absolute names of everything of irlx that a module imports, wherever in its text."""
+    package = ["irlx", *path.relative_to(SOURCE).parent.parts]
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = package[: len(package) - node.level + 1] if node.level else []
+            module = ".".join([*base, *([node.module] if node.module else [])])
+            yield from (f"{module}.{alias.name}" for alias in node.names)
+
+
+def parts_used(path):
+    """Folders and top-level modules of irlx that a module imports from."""
+    names = {name.split(".")[1] for name in imported_modules(path) if name.startswith("irlx.")}
+    return {name for name in names if (SOURCE / name).is_dir() or (SOURCE / f"{name}.py").is_file()}
+
+
+def test_every_folder_has_its_place():
+    folders = {path.name for path in SOURCE.iterdir() if path.is_dir() and any(path.glob("*.py"))}
+    assert folders <= set(ORDER)
+    top = {path.stem for path in SOURCE.glob("*.py")}
+    assert top == WIRING | ANYWHERE | {"__init__", "__main__"}
+
+
+@pytest.mark.req("QA-01")
+@pytest.mark.parametrize("path", MODULES, ids=name_of)
+def test_imports_go_upwards(path):
+    folder = path.relative_to(SOURCE).parts[0]
+    if folder in ORDER:
+        allowed = {*ORDER[: ORDER.index(folder) + 1], *ANYWHERE}
+        if folder == "cli":
+            allowed |= WIRING
+    elif folder == "__main__.py":
+        allowed = {"cli"}
+    else:
+        allowed = {*ORDER, *WIRING, *ANYWHERE} - {"cli"}
+    assert parts_used(path) <= allowed
+
+
+@pytest.mark.parametrize("path", MODULES, ids=name_of)
+def test_sizes(path):
+    text = path.read_text(encoding="utf-8")
+    assert len(text.splitlines()) <= MOST_LINES
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            assert node.end_lineno - node.lineno < LONGEST_FUNCTION, node.name
+
+
+@pytest.mark.parametrize("folder", ["language", "blocks", "diagnostics", "interpreter"])
+def test_stages_that_know_no_numerics(folder):
+    heavy = {"numpy", "scipy", "pinocchio", "proxsuite", "pydantic"}
+    for path in (SOURCE / folder).rglob("*.py"):
+        assert heavy.isdisjoint(name.split(".")[0] for name in imported_modules(path)), name_of(path)
+
+
+def test_no_module_for_everything():
+    assert not [name_of(path) for path in MODULES if path.stem in ("utils", "helpers", "common", "misc")]
