@@ -16,10 +16,11 @@ PathLike = str | os.PathLike[str]
 def check(program: PathLike, cell: PathLike | None = None) -> list[Diagnostic]:
     """All findings on a program, and on a cell file where one is given; raises nothing for its input.
 
-    Without a cell this loads neither numpy nor Pinocchio.
+    Names of frames come from `cell`, or from the cell that a run would find. Without `cell`
+    this loads neither numpy nor Pinocchio.
     """
     try:
-        analysis = analyse_file(program)
+        analysis = analyse_file(program, cell)
     except ProgramError as error:
         return list(error.diagnostics)
     found = list(analysis.diagnostics)

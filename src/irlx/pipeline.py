@@ -6,17 +6,18 @@ import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from unicodedata import normalize
 
 from irlx._version import __version__
 from irlx.blocks import Block, Origin, Question
 from irlx.cell.cell import Cell
-from irlx.cell.load import find_cell, load_cell
+from irlx.cell.load import load_cell
 from irlx.diagnostics import Diagnostic, IrlxError, Place, Span, report
 from irlx.interpreter.interpret import interpret
 from irlx.interpreter.setting import Setting
 from irlx.pacing.pacer import Pacer, PacingSetup
 from irlx.pacing.rows import MotionRows
-from irlx.program import Program, load
+from irlx.program import Program, cell_path, load
 from irlx.report.recording import Recording
 from irlx.report.run import Run, RunError, RunInterrupted
 from irlx.robot.kinematics import Kinematics
@@ -47,7 +48,7 @@ def prepare(program: Program | PathLike, cell: PathLike | None = None, tick_ms: 
     Raises ProgramError, CellError, or IrlxError with IRL006 for a tick out of range.
     """
     if not isinstance(program, Program):
-        program = load(program)
+        program = load(program, cell)
     loaded = load_cell(cell_path(program, cell))
     if tick_ms is None:
         return Job(program, loaded, loaded.tick_ns)
@@ -55,20 +56,6 @@ def prepare(program: Program | PathLike, cell: PathLike | None = None, tick_ms: 
         cause = f"a tick lasts {LEAST_TICK_MS:g} to {LONGEST_TICK_MS:g} ms"
         raise IrlxError(report("IRL006", value=f"{tick_ms:g}", cause=cause))
     return Job(program, loaded, round(tick_ms * 1e6))
-
-
-def cell_path(program: Program, given: PathLike | None) -> Path:
-    """Path of the cell file of a program. Raises CellError, IRL609, that lists what was tried."""
-    if given is not None:
-        return Path(given)
-    candidates = []
-    place = None
-    name = program.specification
-    if name is not None:
-        candidates.append(program.path.with_name(f"{name.name}.toml"))
-        place = Place.in_text(program.source, name.span)
-    candidates.append(program.path.with_suffix(".toml"))
-    return find_cell(candidates, place or Place(str(program.path)))
 
 
 def setting_of(cell: Cell) -> Setting:
@@ -82,7 +69,9 @@ def setting_of(cell: Cell) -> Setting:
         "R_SPEED_PTP": motion.speed_ptp,
         "R_ACC_PTP": motion.acc_ptp,
     }
-    poses = {name: (frame.position, frame.quaternion) for name, frame in cell.frames.items()}
+    poses = {
+        normalize("NFC", name): (frame.position, frame.quaternion) for name, frame in cell.frames.items()
+    }
     axes = cell.robot.axes
     return Setting(cell.robot.joint_names, tuple(axis.is_prismatic for axis in axes), defaults, poses)
 

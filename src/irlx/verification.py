@@ -34,7 +34,7 @@ def verify(
     report = verify_stream(joint_stream, robot_for(joint_stream, beside, cell))
     if program is None:
         return report
-    return VerifyReport((*report.checks, _program_check(joint_stream, Path(program))))
+    return VerifyReport((*report.checks, _program_check(joint_stream, Path(program), cell)))
 
 
 def robot_for(stream: JointStream, beside: Path, cell: PathLike | None = None) -> RobotDescription | None:
@@ -53,10 +53,10 @@ def robot_for(stream: JointStream, beside: Path, cell: PathLike | None = None) -
     return load_robot(RobotSection(model=header.robot_model, tip=header.tip), header.robot_model, beside)
 
 
-def _program_check(stream: JointStream, path: Path) -> Check:
+def _program_check(stream: JointStream, path: Path, cell: PathLike | None) -> Check:
     from irlx.program import load
 
-    digest = hashlib.sha256(load(path).path.read_bytes()).hexdigest()
+    digest = hashlib.sha256(load(path, cell).path.read_bytes()).hexdigest()
     same = digest == stream.header.program_sha256
     detail = "" if same else f"the stream was made from {stream.header.program_name} with another text"
     return Check("program", OK if same else FAILED, detail=detail)

@@ -86,7 +86,6 @@ def test_forms_of_limits(cell, chain, kind, entry, turn, slide):
     assert (lower[1], upper[1]) == pytest.approx(tuple(np.array(slide) * 1e-3))
 
 
-@pytest.mark.xfail(strict=True, reason="the whole number 0 is taken for false: no limit at all")
 @pytest.mark.parametrize("kind", ["position", "speed", "acceleration"])
 def test_a_limit_of_zero_is_a_limit(cell, chain, kind):
     found = cell(f"[robot]\nmodel = 'own.urdf'\n[robot.limits]\n{kind} = [0, 0, 0, 0, 0, 0]\n", own=chain(6))
@@ -108,10 +107,17 @@ def test_locked_joints_leave_the_robot(cell, chain):
     assert found.weights.tolist() == [6, 5, 4, 3, 2, 1]
 
 
-def test_a_locked_joint_of_a_packaged_robot(request, cell, koch):
-    reason = "packaged start and weights keep 11 values: the cell is told of lists it does not have"
-    request.applymarker(pytest.mark.xfail(strict=True, reason=reason))
-    assert len(cell(koch + "locked = { joint_1 = 0 }\n").robot.axes) == 10
+def test_a_locked_joint_of_a_packaged_robot(cell, koch):
+    whole, found = cell(koch), cell(koch + "locked = { joint_1 = 0, joint_10 = 3 }\n")
+    assert found.robot.joint_names == whole.robot.joint_names[1:9] + whole.robot.joint_names[10:]
+    assert found.weights.tolist() == [10, 9, 8, 7, 6, 5, 4, 3, 1]
+    assert found.start.tolist() == [*whole.start[1:9], whole.start[10]]
+
+
+def test_another_tip_of_a_packaged_robot(cell, koch):
+    whole, found = cell(koch), cell(koch + "tip = 'arm_9'\n")
+    assert len(found.robot.axes) < 11
+    assert found.weights.tolist() == whole.weights.tolist()[: len(found.robot.axes)]
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """What users get wrong: a code, a place, an exit code, nothing left behind, never a traceback."""
 
+import json
 import shutil
 import subprocess
 import sys
@@ -89,6 +90,32 @@ def test_cells_that_cannot_be_used(inside, folder, names, content, words):
     assert words in done.stderr
     assert done.stdout == ""
     assert names(folder) == before
+
+
+@pytest.mark.req("QA-09")
+@pytest.mark.parametrize(
+    ("arguments", "codes"),
+    [
+        (["bad.irl"], ["IRL201", "IRL301"]),
+        (["p.irl", "--cell", "pp.toml"], ["IRL001"]),
+        (["q.irl"], ["IRL001"]),
+        (["p.irl", "-o", "out.foo"], ["IRL004"]),
+    ],
+)
+def test_json_of_what_cannot_run(inside, folder, arguments, codes):
+    write(folder, "bad.irl", "PROGRAM p;\nBEGIN\n  x := 1;\n  CYCLICSTART;\nENDPROGRAM")
+    done = inside("run", *arguments, "--json")
+    found = json.loads(done.stdout)
+    assert found["summary"] is None
+    assert [d["code"] for d in found["diagnostics"]] == codes
+    assert done.returncode == (1 if "bad.irl" in arguments else 2)
+    assert codes[0] in done.stderr
+
+
+@pytest.mark.req("QA-09")
+def test_a_cell_path_with_a_slip(inside):
+    done = inside("run", "p.irl", "--cell", "pp.toml")
+    assert done.stderr.startswith("error IRL001: no such file: pp.toml; did you mean 'p.toml'?\n")
 
 
 LIMITS = """MAIN_JOINT_MIN: lo := (-180, -150, -180, 0, -180, -180, -180, -60, -180, -500, {});
@@ -200,7 +227,6 @@ def test_usage_errors(capsys, arguments):
     assert err.startswith("usage: irlx")
 
 
-@pytest.mark.xfail(strict=True, reason="a file that is no stream by its ending exits with 1, not 2")
 def test_verifying_what_is_no_stream(inside):
     done = inside("verify", "p.irl")
     assert "IRL707" in done.stderr

@@ -46,6 +46,7 @@ MESSAGES = {
     "IRL213": (3, 21, "'count' hides a name of the program"),
     "IRL214": (2, 22, "the record has two fields 'A'"),
     "IRL215": (4, 8, "unknown label 'finish'; did you mean 'finsh'?"),
+    "IRL216": (2, 11, "'r_speed' is a system variable: assign to it instead of declaring it"),
     "IRL217": (3, 3, "EXIT outside of a loop"),
     "IRL301": (4, 3, "CYCLICSTART is still on at the end of the program"),
     "IRL302": (5, 3, "FREEZEEND although FREEZESTART is not on"),

@@ -172,6 +172,5 @@ def test_what_has_no_meaning(value_error, expression, left, right):
 
 
 @pytest.mark.req("LANG-31")
-@pytest.mark.xfail(strict=True, reason="INV takes a POSE only; the profile says INV(x)")
 def test_inverse_of_an_orientation(value):
     assert_same_rotation(rotation_of(value("INV(o)", DECLARED)), Rotation.from_euler("z", -90, degrees=True))

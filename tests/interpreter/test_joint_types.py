@@ -64,9 +64,6 @@ def test_joint_types_are_not_interchangeable(run_error, statement, expected):
 
 
 @pytest.mark.req("LANG-23")
-@pytest.mark.xfail(
-    strict=True, reason="JOINT keeps the predefined MAIN_JOINT: 'expected MAIN_JOINT, found MAIN_JOINT'"
-)
 @pytest.mark.parametrize(
     "statements",
     [
@@ -80,11 +77,9 @@ def test_joint_follows_the_programs_own_main_joint(lines, statements):
 
 
 @pytest.mark.req("LANG-23")
-@pytest.mark.xfail(
-    strict=True, reason="fields of a joint type may be anything; the run ends in an internal error"
-)
 @pytest.mark.parametrize(("field", "value"), [("POSITION", "(1, 2, 3)"), ("BOOL", "TRUE"), ("STRING", "'a'")])
 def test_fields_of_a_joint_type_are_numbers(run_error, field, value):
     declarations = f"TYPE RECORD {field}: a, b, c; ENDRECORD = MAIN_JOINT;"
     declarations += f" VAR MAIN_JOINT: j := ({value}, {value}, {value});"
-    assert run_error(declarations, "MOVE PTP j;", joints=3)[0].startswith("IRL22")
+    message = f"expected REAL for a field of MAIN_JOINT, found {field}"
+    assert run_error(declarations, "MOVE PTP j;", joints=3) == ("IRL222", message, field)

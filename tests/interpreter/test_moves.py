@@ -210,7 +210,6 @@ def test_poses_of_the_cell_are_constants(lines, run_error):
     assert (code, message) == ("IRL211", "'Fixture' is a constant and cannot be set")
 
 
-@pytest.mark.xfail(strict=True, reason="a variable of the name of a system variable ends in a TypeError")
 @pytest.mark.parametrize("declaration", ["VAR REAL: r_speed;", "VAR BOOL: R_SPEED := TRUE;"])
 def test_declaring_a_system_variable(run_error, declaration):
     code, _, _ = run_error(declaration, "MOVE LIN POSITION(1, 2, 3);")

@@ -129,3 +129,28 @@ def test_every_parameter_of_move_is_known():
     given = " ".join(f"{word} := 1" for word in MOVE_PARAMETERS if word != "angle")
     assert "speed_ori" in given
     assert codes(f"PROGRAM t; VAR POSE: p; BEGIN MOVE LIN p {given}; ENDPROGRAM") == []
+
+
+@pytest.mark.parametrize(
+    "declarations",
+    [
+        "VAR REAL: r_speed;",
+        "CONST POSE: R_TOOL := ((0, 0, 0), (1, 0, 0, 0));",
+        "VAR INPUT BOOL: R_Base AT 3;",
+        "PROCEDURE pick(REAL: R_ACC); BEGIN ENDPROC;",
+        "PROCEDURE pick; VAR REAL: R_ACC; BEGIN ENDPROC;",
+    ],
+)
+def test_system_variables_are_not_declared(declarations):
+    text = f"PROGRAM t; {declarations} BEGIN R_SPEED := 5; ENDPROGRAM"
+    (found,) = analyse(source_text("t.irl", text)).diagnostics
+    assert found.code == "IRL216"
+
+
+def test_names_of_the_cell():
+    text = """PROGRAM t; VAR POSE: p, own; PROCEDURE pick; BEGIN p := Fixture; ENDPROC;
+    BEGIN p := FIXTURE; own := p; MOVE LIN fixtur; ENDPROGRAM"""
+    found = analyse(
+        source_text("t.irl", text), cell_names=lambda program: ["Fixture", "Own", program.name.name]
+    )
+    assert [d.message for d in found.diagnostics] == ["unknown name 'fixtur'; did you mean 'Fixture'?"]

@@ -59,6 +59,21 @@ def test_rows_keep_speed_and_acceleration_limits(kit, seed: int, dt: float) -> N
     np.testing.assert_array_equal(rows[-1], end)
 
 
+@pytest.mark.req("MOT-20")
+@pytest.mark.parametrize("excess", [-1e-7, 0.0, 1e-9, 5e-9, 1e-7, 1e-6, 2e-6])
+def test_rounding_to_whole_ticks_never_speeds_a_joint_up(kit, excess: float) -> None:
+    """Limits for 150 ticks and a little: an excess that does not count as a tick must not break them."""
+    slower = 1.0 + excess
+    bounds = limits(1.0 / slower, 2.0 / slower**2)
+    start, end = np.zeros(4), np.array([1.0, 0.0, 0.0, 0.0])
+    planned = plan_joint_line(start, end, kit.law(), bounds, NAMES, 0.01, kit.place)
+    assert 150 <= planned.ticks <= 151
+    speeds, accelerations = differences(start, planned.postures(0.01), 0.01)
+    unit = np.spacing(1.0)
+    assert np.max(speeds) <= bounds.speed_upper[0] * (1 + 1e-9) + 2 * unit / 0.01
+    assert np.max(np.abs(accelerations)) <= bounds.acceleration_upper[0] * (1 + 1e-9) + 4 * unit / 0.01**2
+
+
 @pytest.mark.parametrize("seed", range(15))
 def test_joints_move_straight_and_arrive_together(kit, seed: int) -> None:
     start, end, bounds = random_case(seed)
@@ -123,10 +138,13 @@ def test_joints_without_speed_limit_need_time(kit) -> None:
 
 
 @pytest.mark.parametrize("bounds", [limits(0.0), limits(1.0, 0.0)], ids=["speed", "acceleration"])
-@pytest.mark.xfail(strict=True, raises=ZeroDivisionError, reason="a limit of 0 divides by zero in Trapezoid")
 def test_a_joint_that_may_not_move_is_a_located_error(kit, bounds: JointLimits) -> None:
-    with pytest.raises(MotionError):
-        plan_joint_line(np.zeros(4), np.ones(4), kit.law(), bounds, NAMES, 0.01, kit.place)
+    for law in (kit.law(), kit.law(duration=5.0)):
+        with pytest.raises(MotionError) as caught:
+            plan_joint_line(np.zeros(4), np.array([0.0, 1.0, 1.0, 0.0]), law, bounds, NAMES, 0.01, kit.place)
+        assert caught.value.reason.code == "IRL426"
+        assert caught.value.reason.data["joint"] == "j2"
+        assert caught.value.reason.place == kit.place
 
 
 @pytest.mark.req("MOT-04")

@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+from irlx.diagnostics import Place
+from irlx.motion.errors import MotionError
 from irlx.motion.trapezoid import Trapezoid
-from irlx.motion.whole_ticks import whole_ticks
+from irlx.motion.whole_ticks import MOST_TICKS, ticks_of_move, whole_ticks
 
 pytestmark = pytest.mark.req("MOT-03")
 
@@ -104,3 +106,14 @@ def test_stretching_scales_time_alone(case) -> None:
 )
 def test_duration_is_rounded_up_to_whole_ticks(duration: float, dt: float, ticks: int) -> None:
     assert whole_ticks(duration, dt) == ticks
+
+
+@pytest.mark.req("MOT-04")
+@pytest.mark.parametrize("duration", [float("inf"), float("nan"), 1e300, 0.001 * (MOST_TICKS + 1)])
+def test_moves_of_too_many_ticks_are_refused(duration: float) -> None:
+    place = Place("long.irl")
+    with pytest.raises(MotionError) as caught:
+        ticks_of_move(duration, 0.001, place)
+    assert caught.value.reason.code == "IRL425"
+    assert caught.value.reason.place == place
+    assert ticks_of_move(0.001 * MOST_TICKS, 0.001, place) == MOST_TICKS

@@ -79,7 +79,6 @@ def test_rows_before_the_failed_move_stay_valid(kit, shop) -> None:
     assert shop.line(kit.position(kit.start)) is not None
 
 
-@pytest.mark.xfail(strict=True, reason="the last tick has no path speed, so its line is taken for a turn")
 def test_way_of_a_line_that_fails_in_its_last_tick_is_in_millimetres(kit) -> None:
     shop = kit.shop(dt=0.05, limits=kit.limits([5, 5, 0.4 - 1e-5, 5, 5, 5, 5]))
     reason = reason_of(lambda: shop.line(kit.beyond(0.0, 0.6, 0.0)))

@@ -10,7 +10,7 @@ import pytest
 from irlx.blocks import CyclicBlock, FreezeBlock, LimitClause, LimitKind, LimitSwitchBlock, Origin
 from irlx.pacing.options import Options, limits_in_force
 
-pytestmark = pytest.mark.req("LANG-61")
+pytestmark = pytest.mark.req("LANG-60")
 
 HERE = Origin("cell.irl", 0, 4, 1)
 THERE = Origin("cell.irl", 7, 11, 2)
@@ -66,6 +66,7 @@ def test_switching_off_what_is_not_on_changes_nothing(kit) -> None:
     assert options == Options()
 
 
+@pytest.mark.req("LANG-61")
 def test_cyclic_posture_is_a_copy_of_the_moment() -> None:
     q = Q.copy()
     options = Options().after(cyclic(True), q)
@@ -74,6 +75,7 @@ def test_cyclic_posture_is_a_copy_of_the_moment() -> None:
     np.testing.assert_array_equal(options.after(cyclic(True), Q + 1).cyclic_posture, Q + 1)
 
 
+@pytest.mark.req("LANG-63")
 def test_frozen_joints_count_from_one() -> None:
     free = Options().after(freeze(1, 7, 7), Q).free_joints(7)
     assert free.tolist() == [False, True, True, True, True, True, False]

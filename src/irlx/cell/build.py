@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from math import cos, inf, radians, sin
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from irlx.cell.cell import Cell, MotionDefaults, NamedFrame
 from irlx.cell.errors import CellError
+from irlx.cell.limit_entry import LimitEntry
 from irlx.cell.schema import CellFile, FrameSection, LimitsSection, RobotSection
 from irlx.diagnostics import Diagnostic, Place, report
+from irlx.diagnostics.diagnostic import near_matches
 from irlx.robot.description import RobotDescription
 from irlx.robot.limits import JointLimits
 
@@ -86,7 +88,9 @@ def _status_joints(
     for index, name in enumerate(section.status_joints):
         if name not in robot.joint_names:
             key = f"robot.status_joints[{index + 1}]"
-            data: dict[str, Any] = {"key": key, "name": name, "known": ", ".join(robot.joint_names)}
+            near = near_matches(name, robot.joint_names)
+            data: dict[str, Any] = {"key": key, "name": name, "near": near}
+            data["known"] = ", ".join(robot.joint_names)
             errors.append(report("IRL606", Place(file, key=key), **data))
 
 
@@ -109,7 +113,11 @@ def _limits(
 
 
 def _pairs(
-    given: object, kind: str, robot: RobotDescription, file: str, errors: list[Diagnostic]
+    given: list[LimitEntry] | Literal[False],
+    kind: str,
+    robot: RobotDescription,
+    file: str,
+    errors: list[Diagnostic],
 ) -> list[tuple[float, float]]:
     """Lower and upper bound (SI) of every joint."""
     key, count = f"robot.limits.{kind}", len(robot.axes)
@@ -121,23 +129,24 @@ def _pairs(
         return free
     pairs = []
     for joint, entry in enumerate(given):
-        lower, upper = _pair(entry)
-        place = Place(file, key=f"{key}[{joint + 1}]")
-        data: dict[str, Any] = {"joint": robot.axes[joint].name, "kind": kind, "found": entry}
-        if lower > upper:
-            errors.append(report("IRL605", place, cause="the lower bound is above the upper one", **data))
-        elif kind != "position" and not lower <= 0.0 <= upper:
-            errors.append(report("IRL605", place, cause="the range does not contain standstill (0)", **data))
-        pairs.append((to_si(robot, joint, lower), to_si(robot, joint, upper)))
+        cause = _no_range(entry, kind)
+        if cause:
+            place = Place(file, key=f"{key}[{joint + 1}]")
+            data: dict[str, Any] = {"joint": robot.axes[joint].name, "kind": kind, "found": entry.written}
+            errors.append(report("IRL605", place, cause=cause, **data))
+        pairs.append((to_si(robot, joint, entry.lower), to_si(robot, joint, entry.upper)))
     return pairs
 
 
-def _pair(entry: object) -> tuple[float, float]:
-    if isinstance(entry, list):
-        return float(entry[0]), float(entry[1])
-    if entry is False or not isinstance(entry, int | float):
-        return -inf, inf
-    return -float(entry), float(entry)
+def _no_range(entry: LimitEntry, kind: str) -> str:
+    """Why an entry is no range of a joint, or ''."""
+    if entry.is_negative_number:
+        return "a single limit must not be negative"
+    if entry.lower > entry.upper:
+        return "the lower bound is above the upper one"
+    if kind != "position" and not entry.lower <= 0.0 <= entry.upper:
+        return "the range does not contain standstill (0)"
+    return ""
 
 
 def _start_errors(q: Array, limits: JointLimits, robot: RobotDescription, file: str) -> list[Diagnostic]:

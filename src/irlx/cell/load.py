@@ -1,4 +1,4 @@
-"""Finding and loading a cell file."""
+"""Loading a cell file."""
 
 from __future__ import annotations
 
@@ -7,18 +7,10 @@ from pathlib import Path
 from irlx.cell.build import build_cell
 from irlx.cell.cell import Cell
 from irlx.cell.errors import CellError
-from irlx.cell.model import load_robot, with_packaged_defaults
+from irlx.cell.model import load_robot, with_packaged_defaults, without_absent_joints
 from irlx.cell.read import read_cell_file
 from irlx.diagnostics import Place, report
-
-
-def find_cell(candidates: list[Path], specification: Place | None) -> Path:
-    """First of the candidates that exists. Raises CellError, IRL609, that lists what was tried."""
-    for path in candidates:
-        if path.is_file():
-            return path
-    tried = ", ".join(str(path) for path in candidates)
-    raise CellError(report("IRL609", specification, tried=tried))
+from irlx.diagnostics.near_files import near_files
 
 
 def load_cell(path: Path) -> Cell:
@@ -26,6 +18,7 @@ def load_cell(path: Path) -> Cell:
     content = read_cell_file(read_bytes(path), str(path))
     section = with_packaged_defaults(content.robot)
     robot = load_robot(section, str(path), path.parent)
+    section = without_absent_joints(section, content.robot, robot)
     return build_cell(content, section, robot, str(path))
 
 
@@ -34,7 +27,7 @@ def read_bytes(path: Path) -> bytes:
     try:
         return path.read_bytes()
     except FileNotFoundError as cause:
-        raise CellError(report("IRL001", path=path, near="")) from cause
+        raise CellError(report("IRL001", path=path, near=near_files(path))) from cause
     except IsADirectoryError as cause:
         raise CellError(report("IRL007", path=path)) from cause
     except OSError as cause:

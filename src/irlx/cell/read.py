@@ -9,6 +9,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from irlx.cell.errors import CellError
+from irlx.cell.expectation import as_written, expectation
 from irlx.cell.schema import (
     CellFile,
     FrameSection,
@@ -24,6 +25,7 @@ if sys.version_info >= (3, 11):
 else:
     import tomli as tomllib
 
+_BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 _SECTIONS: dict[tuple[str, ...], type[BaseModel]] = {
     (): CellFile,
     ("robot",): RobotSection,
@@ -39,7 +41,8 @@ def read_cell_file(content: bytes, file: str) -> CellFile:
     Raises CellError with one diagnostic a fault: IRL601 not TOML, IRL602 unknown key, IRL603 value.
     """
     try:
-        table = tomllib.loads(content.decode("utf-8"))
+        # Editors that put a byte-order mark before UTF-8 do so with cells as they do with programs.
+        table = tomllib.loads(content.removeprefix(_BYTE_ORDER_MARK).decode("utf-8"))
     except UnicodeDecodeError as cause:
         message = f"byte {cause.start} is no UTF-8"
         raise CellError(report("IRL601", Place(file), cause=message)) from cause
@@ -63,8 +66,8 @@ def _diagnostics(cause: ValidationError, table: Mapping[str, Any], file: str) ->
             near = near_matches(str(location[-1]), known)
             found[key] = report("IRL602", place, key=key, near=near, known=", ".join(known))
         else:
-            expected = _expectation(fault, location)
-            value = repr(_value_at(table, location))
+            expected = expectation(fault)
+            value = as_written(_value_at(table, location))
             found[key] = report("IRL603", place, key=key, expected=expected, found=value)
     return list(found.values())
 
@@ -76,7 +79,7 @@ def _in_file(location: tuple[int | str, ...], table: object) -> tuple[int | str,
         inside = isinstance(table, Mapping) and step in table
         inside = inside or (isinstance(table, list) and isinstance(step, int) and step < len(table))
         if not inside:
-            break
+            continue
         real.append(step)
         table = table[step]  # type: ignore[index]
     return tuple(real)
@@ -92,19 +95,6 @@ def _known_keys(section: tuple[int | str, ...]) -> list[str]:
     names = tuple(str(step) for step in section)
     model = _SECTIONS.get(names) or _SECTIONS.get((*names[:-1], "*"))
     return list(model.model_fields) if model else []
-
-
-_LIMIT_WORDS = "a number, a pair [lower, upper], or false, for each joint"
-
-
-def _expectation(fault: Any, location: tuple[int | str, ...]) -> str:
-    if "limits" in location:
-        return _LIMIT_WORDS
-    message = str(fault["msg"])
-    for prefix in ("Input should be a valid ", "Input should be "):
-        if message.startswith(prefix):
-            return message[len(prefix) :]
-    return message[:1].lower() + message[1:]
 
 
 def key_path(location: tuple[int | str, ...]) -> str:

@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic_core import PydanticCustomError
 
-Number = Annotated[float, Field(strict=False, allow_inf_nan=False)]
+from irlx.cell.limit_entry import Limits
+from irlx.language.builtins import SYSTEM_VARIABLES
+
+Number = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 Percent = Annotated[float, Field(gt=0.0, le=100.0)]
-Pair = Annotated[list[Number], Field(min_length=2, max_length=2)]
-Limit = Number | Pair | Literal[False]
 Vector = Annotated[list[Number], Field(min_length=3, max_length=3)]
+
+
+def _frame_name(name: str) -> str:
+    if name.casefold() in SYSTEM_VARIABLES:
+        raise PydanticCustomError("frame_name", "another name, for this one is a system variable")
+    return name
+
+
+FrameName = Annotated[str, AfterValidator(_frame_name)]
 
 
 class Section(BaseModel):
@@ -26,9 +37,9 @@ class LimitsSection(Section):
     A number is +- that number, a pair is [lower, upper], false is no limit; deg | mm, s.
     """
 
-    position: list[Limit] | Literal[False] | None = None
-    speed: list[Limit] | Literal[False] | None = None
-    acceleration: list[Limit] | Literal[False] | None = None
+    position: Limits | None = None
+    speed: Limits | None = None
+    acceleration: Limits | None = None
 
 
 class RobotSection(Section):
@@ -67,6 +78,6 @@ class CellFile(Section):
 
     robot: RobotSection = Field(default_factory=RobotSection)
     motion: MotionSection = Field(default_factory=MotionSection)
-    frames: dict[str, FrameSection] = Field(default_factory=dict)
+    frames: dict[FrameName, FrameSection] = Field(default_factory=dict)
     obstacle: list[dict[str, Any]] = Field(default_factory=list)
     signals: dict[str, Any] = Field(default_factory=dict)

@@ -45,6 +45,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = build_parser().parse_args(arguments)
     try:
         code = options.command(options)
+        # Here and not at the end of the process: a reader that went away must be met inside this fence.
+        sys.stdout.flush()
     except IrlxError as error:
         print_diagnostics(error.diagnostics)
         return exit_code(error.diagnostics)

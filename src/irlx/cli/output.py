@@ -11,6 +11,8 @@ from irlx.diagnostics.text import render_text
 
 _COLOURS = {"error": "\x1b[1;31m", "warning": "\x1b[1;33m", "info": "\x1b[1;36m"}
 _PLAIN = "\x1b[0m"
+_USAGE = frozenset({"IRL707"})
+"""Codes beyond IRL0xx and IRL6xx that say that a file was wrongly named, not that its content is wrong."""
 
 
 def coloured(stream: object) -> bool:
@@ -41,4 +43,4 @@ def exit_code(diagnostics: Sequence[Diagnostic]) -> int:
     errors = [diagnostic for diagnostic in diagnostics if diagnostic.is_error]
     if not errors:
         return 0
-    return 2 if any(error.code[3] in "06" for error in errors) else 1
+    return 2 if any(error.code[3] in "06" or error.code in _USAGE for error in errors) else 1

@@ -6,11 +6,14 @@ import argparse
 import json
 import os
 import sys
+from collections.abc import Iterable
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from irlx.diagnostics import Diagnostic
+    from irlx.pipeline import Job
     from irlx.report.run import Run
 
 _EXAMPLE = """\
@@ -50,12 +53,11 @@ def add_parser(commands: Any) -> None:
 def command(options: argparse.Namespace) -> int:
     """Run the program; exit code 1 where it ended in an error or the verification failed."""
     from irlx.cli.output import exit_code, print_diagnostics
-    from irlx.pipeline import execute, prepare
+
+    job, outputs = _prepared(options)
+    from irlx.pipeline import execute
     from irlx.report.run import RunError, RunInterrupted
 
-    job = prepare(options.program, options.cell, options.tick)
-    inputs = (job.program.path, Path(job.cell.file))
-    outputs = output_paths(options.output, job.program.path, inputs)
     try:
         with _progress(options) as progress:
             run = execute(job, progress)
@@ -74,6 +76,26 @@ def command(options: argparse.Namespace) -> int:
     reports = {} if options.no_verify else {str(path): _verified(path, options) for path in outputs}
     _print_summary(run, outputs, reports, options)
     return 0 if all(report.passed for report in reports.values()) else 1
+
+
+def _prepared(options: argparse.Namespace) -> tuple[Job, list[Path]]:
+    """Job and files to write; what is wrong with them goes to stdout as well where JSON is asked for."""
+    from irlx.diagnostics import IrlxError
+    from irlx.program import load
+
+    try:
+        # Before the numeric libraries are imported: a mistake in the text is told at once.
+        program = load(options.program, options.cell)
+        from irlx.pipeline import prepare
+
+        job = prepare(program, options.cell, options.tick)
+        inputs = (program.path, Path(job.cell.file))
+        return job, output_paths(options.output, program.path, inputs)
+    except IrlxError as error:
+        if options.json:
+            plain = {"summary": None, "diagnostics": _plain_diagnostics(error.diagnostics)}
+            print(json.dumps(plain, indent=2))
+        raise
 
 
 def output_paths(asked: list[str], program: Path, inputs: tuple[Path, ...]) -> list[Path]:
@@ -121,15 +143,14 @@ def _keep_partial(run: Run, outputs: list[Path], options: argparse.Namespace) ->
             words = f"the stream up to the last stop ({run.t[-1]:.6g} s), marked incomplete: {partial}"
             print(f"irlx: {words}", file=sys.stderr)
     if options.json:
-        print(
-            json.dumps({"summary": run.summary.to_plain(), "diagnostics": _plain_diagnostics(run)}, indent=2)
-        )
+        plain = {"summary": run.summary.to_plain(), "diagnostics": _plain_diagnostics(run.diagnostics)}
+        print(json.dumps(plain, indent=2))
 
 
-def _plain_diagnostics(run: Run) -> list[dict[str, object]]:
+def _plain_diagnostics(diagnostics: Iterable[Diagnostic]) -> list[dict[str, object]]:
     return [
         {"code": d.code, "severity": d.severity.value, "message": d.message, "place": str(d.place or "")}
-        for d in run.diagnostics
+        for d in diagnostics
     ]
 
 
@@ -149,7 +170,7 @@ def _print_summary(
             "summary": run.summary.to_plain(),
             "files": [str(path) for path in outputs],
             "verified": {name: report.passed for name, report in reports.items()},
-            "diagnostics": _plain_diagnostics(run),
+            "diagnostics": _plain_diagnostics(run.diagnostics),
         }
         print(json.dumps(plain, indent=2))
         return

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import isfinite
 
 from irlx.diagnostics import SourceText, Span
 from irlx.interpreter.errors import fail
@@ -13,6 +14,8 @@ from irlx.interpreter.values import ArrayValue, RecordValue, Value, type_name
 
 _UNIT_LENGTH = 1e-6
 _INT_LIMIT = 2**63
+_INT_RANGE = "INT holds the whole numbers from -2^63 to 2^63 - 1"
+_REAL_RANGE = "REAL holds numbers up to 1.8E308"
 
 
 @dataclass(frozen=True)
@@ -41,6 +44,11 @@ def fit(value: Value, expected: Type, where: Where) -> Value:
     raise fail("IRL222", where.source, where.span, expected=expected.name, found=type_name(value))
 
 
+def count(number: int, noun: str, nouns: str = "") -> str:
+    """A number of things in words: ``1 value``, ``2 values``."""
+    return f"{number} {noun}" if number == 1 else f"{number} {nouns or noun + 's'}"
+
+
 def _is_number(value: Value) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
@@ -48,7 +56,17 @@ def _is_number(value: Value) -> bool:
 def whole_number(value: int, what: str, where: Where) -> int:
     """The value where it fits INT. Raises InterpreterError, IRL503."""
     if not -_INT_LIMIT <= value < _INT_LIMIT:
-        raise fail("IRL503", where.source, where.span, what=what)
+        raise fail("IRL503", where.source, where.span, what=what, type="INT", range=_INT_RANGE)
+    return value
+
+
+def finite(value: Value, where: Where) -> Value:
+    """The value where all its numbers are finite. Raises InterpreterError, IRL503."""
+    if isinstance(value, float) and not isfinite(value):
+        raise fail("IRL503", where.source, where.span, what="the result", type="REAL", range=_REAL_RANGE)
+    if isinstance(value, RecordValue):
+        for part in value.values:
+            finite(part, where)
     return value
 
 
@@ -57,7 +75,8 @@ def assemble(type: Record | Array, parts: Sequence[Value], where: Where) -> Valu
     IRL230 for an orientation that is no unit quaternion."""
     expected = len(type.fields) if isinstance(type, Record) else type.size
     if len(parts) != expected:
-        raise fail("IRL223", where.source, where.span, type=type.name, expected=expected, found=len(parts))
+        data = {"type": type.name, "expected": count(expected, "value"), "found": len(parts)}
+        raise fail("IRL223", where.source, where.span, **data)
     if isinstance(type, Array):
         return ArrayValue(type, tuple(parts))
     value = RecordValue(type, tuple(parts))

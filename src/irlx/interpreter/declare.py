@@ -9,18 +9,33 @@ from irlx.interpreter.evaluate import Evaluator
 from irlx.interpreter.scope import Scope, Variable
 from irlx.interpreter.setting import SYSTEM_REALS, Setting
 from irlx.interpreter.support import part_name
-from irlx.interpreter.types import JOINT_RECORDS, POSE, REAL, Array, Record, Type, predefined_types
+from irlx.interpreter.system_names import LATER_TYPES
+from irlx.interpreter.types import (
+    JOINT_RECORDS,
+    POSE,
+    REAL,
+    Array,
+    Record,
+    Type,
+    ambiguous_field,
+    joint_type,
+    predefined_types,
+)
 from irlx.interpreter.values import RecordValue, Value, unset_value
 from irlx.language import tree
+from irlx.language.builtins import SYSTEM_VARIABLES
+from irlx.language.symbols import declared_symbols
 
 
 def declared_scope(program: tree.Program, source: SourceText, setting: Setting) -> Scope:
     """Scope of a program: system variables, poses of the cell, then what the program declares.
 
-    Raises InterpreterError: IRL221 for a joint type that does not fit the robot, IRL204 for an
-    unknown type, IRL590 for a part that is not executed yet, and what initial values may raise.
+    Raises InterpreterError: IRL221, IRL222 for a joint type that does not fit the robot, IRL204 for an
+    unknown type, IRL216 for a system variable declared, IRL226 for a record of ambiguous fields, IRL508,
+    IRL507 for arrays, IRL590 for a part that is not executed yet, and what initial values may raise.
     """
-    scope = Scope(types=predefined_types(len(setting.joint_names)))
+    announced = frozenset(symbol.name.key for symbol in declared_symbols(program.declarations))
+    scope = Scope(types=predefined_types(len(setting.joint_names)), announced=announced)
     for name in SYSTEM_REALS:
         scope.variables[name.casefold()] = Variable(name, REAL, float(setting.defaults[name]))
     for name, (at, turned) in setting.poses.items():
@@ -65,20 +80,38 @@ class _Declarer:
         type = self._type(part.type)
         if isinstance(type, Record):
             type = Record(part.name.name, type.fields)
-        joints = self._setting.joint_names
-        if part.name.key in JOINT_RECORDS and (
-            not isinstance(type, Record) or len(type.fields) != len(joints)
-        ):
-            found = len(type.fields) if isinstance(type, Record) else 1
-            data = {"type": part.name.name, "found": found, "joints": len(joints), "names": ", ".join(joints)}
-            raise fail("IRL221", self._source, part.name.span, **data)
-        self._scope.types[part.name.key] = type
+        key = part.name.key
+        if key in JOINT_RECORDS:
+            self._check_joint_type(part, type)
+        predefined = joint_type(self._scope.types["main_joint"])
+        self._scope.types[key] = type
+        # JOINT holds the program's own MAIN_JOINT, unless the program defines JOINT, too.
+        if key == "main_joint" and self._scope.types["joint"] == predefined:
+            self._scope.types["joint"] = joint_type(type)
+            self._scope.variables["r_joint_act"] = _actual_joints(self._scope)
+
+    def _check_joint_type(self, part: tree.TypeDefinition, type: Type) -> None:
+        joints, name = self._setting.joint_names, part.name
+        found = len(type.fields) if isinstance(type, Record) else 1
+        if not isinstance(type, Record) or found != len(joints):
+            data = {"type": name.name, "found": found, "joints": len(joints), "names": ", ".join(joints)}
+            raise fail("IRL221", self._source, name.span, **data)
+        # Groups show where a field gets its type; a type that only gets a second name has none.
+        groups = part.type.groups if isinstance(part.type, tree.RecordType) else ()
+        places = [group.type for group in groups for _ in group.names]
+        for index, (_, field) in enumerate(type.fields):
+            if field is not REAL:
+                place = places[index] if places else part.type
+                expected = f"REAL for a field of {name.name}"
+                raise fail("IRL222", self._source, place.span, expected=expected, found=field.name)
 
     def _variables(
         self, form: tree.TypeForm, variables: tuple[tree.Variable, ...], *, constant: bool
     ) -> None:
         type = self._type(form)
         for variable in variables:
+            if variable.name.key in SYSTEM_VARIABLES:
+                raise fail("IRL216", self._source, variable.name.span, name=variable.name.name)
             value = unset_value(type)
             if variable.initial is not None:
                 value = self._evaluator.value(variable.initial, type)
@@ -94,15 +127,22 @@ class _Declarer:
         for group in form.groups:
             type = self._type(group.type)
             fields += [(name.name, type) for name in group.names]
-        return Record("RECORD", tuple(fields))
+        record = Record("RECORD", tuple(fields))
+        for name in (name for group in form.groups for name in group.names):
+            clash = ambiguous_field(record, name.name)
+            if clash:
+                data = {"name": name.name, "field": clash[0], "rest": clash[1]}
+                raise fail("IRL226", self._source, name.span, **data)
+        return record
 
     def _named(self, name: tree.Name) -> Type:
         found = self._scope.types.get(name.key)
         if found is not None:
             return found
-        if name.key in _LATER_TYPES:
+        if name.key in LATER_TYPES:
             raise fail("IRL590", self._source, name.span, what=f"the type {name.name}")
-        near = near_matches(name.name, [key.upper() for key in self._scope.types])
+        near = "; it is defined further down" if name.key in self._scope.announced else ""
+        near = near or near_matches(name.name, [key.upper() for key in self._scope.types])
         raise fail("IRL204", self._source, name.span, name=name.name, near=near)
 
     def _array(self, form: tree.ArrayType) -> Type:
@@ -110,8 +150,7 @@ class _Declarer:
         for dimension in form.dimensions:
             low, high = self._evaluator.whole(dimension.lower), self._evaluator.whole(dimension.upper)
             if low > high:
-                data = {"index": high, "name": "ARRAY", "low": low, "high": "..."}
-                raise fail("IRL504", self._source, dimension.span, **data)
+                raise fail("IRL508", self._source, dimension.span, low=low, high=high)
             ranges.append((low, high))
         array = Array(tuple(ranges), self._type(form.element))
         if array.size > _MOST_ELEMENTS:
@@ -120,4 +159,3 @@ class _Declarer:
 
 
 _MOST_ELEMENTS = 10_000_000
-_LATER_TYPES = frozenset({"char", "character", "file", "semaphore", "signal", "robtarget"})

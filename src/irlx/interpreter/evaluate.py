@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from irlx.diagnostics import SourceText
 from irlx.diagnostics.diagnostic import near_matches
-from irlx.interpreter.conversion import Where, assemble, fit, part_type, whole_number
+from irlx.interpreter.conversion import Where, assemble, count, finite, fit, part_type, whole_number
 from irlx.interpreter.errors import InterpreterError, fail
 from irlx.interpreter.functions import FUNCTIONS, Function
 from irlx.interpreter.operators import binary, unary
 from irlx.interpreter.scope import Scope, Variable
+from irlx.interpreter.system_names import system_name
 from irlx.interpreter.types import INT, ORIENTATION, REAL, Array, Record, Type
-from irlx.interpreter.values import ArrayValue, RecordValue, Unset, Value, is_set, type_name
+from irlx.interpreter.values import ArrayValue, RecordValue, Value, is_of_type, is_set, type_name, unset_part
 from irlx.language import tree
 
 
@@ -89,8 +90,20 @@ class Evaluator:
         if not isinstance(expected, Record | Array):
             name = expected.name if expected is not None else "a single value"
             raise fail("IRL222", self.source, node.span, expected=name, found=f"{len(items)} values")
+        whole = self._whole_in_parentheses(node, expected)
+        if whole is not None:
+            return whole
         parts = [self.value(item, part_type(expected, index)) for index, item in enumerate(items)]
         return assemble(expected, parts, self.where(node))
+
+    def _whole_in_parentheses(self, node: tree.Expression, expected: Type) -> Value | None:
+        """Value of what stands in parentheses where it is of the expected type already, like `(v)`."""
+        while isinstance(node, tree.Paren):
+            node = node.value
+        if isinstance(node, tree.Aggregate):
+            return None
+        value = self._plain(node)
+        return value if is_of_type(value, expected) else None
 
     # ---- functions
 
@@ -99,33 +112,47 @@ class Evaluator:
         if function is None:
             raise fail("IRL590", self.source, name.span, what=f"the function {name.name}")
         if len(arguments) != len(function.parameters):
-            expected = _count(len(function.parameters), "value")
+            expected = count(len(function.parameters), "value")
             data = {"function": function.name, "expected": expected, "found": len(arguments)}
             raise fail("IRL228", self.source, node.span, **data)
         pairs = zip(arguments, function.parameters, strict=True)
-        return self._apply(function, [self.value(argument, type) for argument, type in pairs], node)
+        values = [
+            self.one_of(argument, type) if isinstance(type, tuple) else self.value(argument, type)
+            for argument, type in pairs
+        ]
+        return self._apply(function, values, node)
 
     def _apply(self, function: Function, values: list[Value], node: tree.Node) -> Value:
+        where = self.where(node)
         if function.name == "ORIQUAT":
             # The general path for orientations: it refuses what is no unit quaternion.
-            return assemble(ORIENTATION, values, self.where(node))
+            return assemble(ORIENTATION, values, where)
         try:
-            return function.apply(*values)
-        except (ValueError, OverflowError):
+            result = function.apply(*values)
+        except (ValueError, OverflowError, ZeroDivisionError):
             shown = ", ".join(
                 f"{value:g}" if isinstance(value, float) else type_name(value) for value in values
             )
             raise fail("IRL506", self.source, node.span, function=function.name, value=shown) from None
+        if isinstance(result, int) and not isinstance(result, bool):
+            return whole_number(result, "the result", where)
+        return finite(result, where)
 
     # ---- designators
 
     def variable(self, name: tree.Name) -> Variable:
-        """The variable of a name. Raises InterpreterError, IRL201, with near matches."""
+        """The variable of a name. Raises InterpreterError: IRL201, with near matches; IRL590 for what the
+        language has and this version does not execute."""
         found = self.scope.variables.get(name.key)
-        if found is None:
-            known = [variable.name for variable in self.scope.variables.values()]
-            raise fail("IRL201", self.source, name.span, name=name.name, near=near_matches(name.name, known))
-        return found
+        if found is not None:
+            return found
+        what = system_name(name)
+        if what:
+            raise fail("IRL590", self.source, name.span, what=what)
+        near = "; it is declared further down" if name.key in self.scope.announced else ""
+        if not near:
+            near = near_matches(name.name, [variable.name for variable in self.scope.variables.values()])
+        raise fail("IRL201", self.source, name.span, name=name.name, near=near)
 
     def _designated(self, node: tree.Designator) -> Value:
         if not node.selectors and node.base.key not in self.scope.variables and node.base.key in FUNCTIONS:
@@ -133,10 +160,9 @@ class Evaluator:
         value: Value = self.variable(node.base).value
         for step in self.steps(node):
             value = _part(value, step)
-        if isinstance(value, Unset) or not is_set(value):
-            raise fail(
-                "IRL501", self.source, node.span, name=self.source.text[node.span.start : node.span.end]
-            )
+        if not is_set(value):
+            name = self.source.text[node.span.start : node.span.end]
+            raise fail("IRL501", self.source, node.span, name=name + unset_part(value))
         return value
 
     def steps(self, node: tree.Designator) -> list[int]:
@@ -180,7 +206,8 @@ class Evaluator:
         if not isinstance(type, Array):
             raise fail("IRL222", self.source, selector.span, expected="an ARRAY before [", found=type.name)
         if len(selector.indices) != len(type.ranges):
-            data = {"type": type.name, "expected": len(type.ranges), "found": len(selector.indices)}
+            expected = count(len(type.ranges), "index", "indices")
+            data = {"type": type.name, "expected": expected, "found": len(selector.indices)}
             raise fail("IRL223", self.source, selector.span, **data)
         position = 0
         for expression, (low, high) in zip(selector.indices, type.ranges, strict=True):
@@ -194,10 +221,10 @@ class Evaluator:
     # ---- values that could be of several types
 
     def one_of(self, node: tree.Expression, candidates: tuple[Type, ...]) -> Value:
-        """Value of an expression that must be of exactly one of several types (targets of MOVE)."""
+        """Value of an expression that must be of exactly one of several types, like a target of MOVE."""
         if not isinstance(node, tree.Aggregate):
             value = self.value(node)
-            if any(isinstance(value, RecordValue) and value.type == type for type in candidates):
+            if any(is_of_type(value, type) for type in candidates):
                 return value
             expected = " or ".join(type.name for type in candidates)
             raise fail("IRL222", self.source, node.span, expected=expected, found=type_name(value))
@@ -215,19 +242,13 @@ class Evaluator:
         if fitting:
             raise fail("IRL229", self.source, node.span, candidates=" or ".join(names))
         expected = " or ".join(type.name for type in candidates)
-        raise fail(
-            "IRL222", self.source, node.span, expected=expected, found=_count(len(node.items), "value")
-        )
+        raise fail("IRL222", self.source, node.span, expected=expected, found=count(len(node.items), "value"))
 
 
 def _one_part(type: Type | None) -> bool:
     if isinstance(type, Record):
         return len(type.fields) == 1
     return isinstance(type, Array) and type.size == 1
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 
 def _part(value: Value, position: int) -> Value:

@@ -7,16 +7,17 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from irlx.interpreter import quaternion as q
-from irlx.interpreter.types import ORIENTATION, POSE, POSITION, REAL, Type
+from irlx.interpreter.types import INT, ORIENTATION, POSE, POSITION, REAL, Type
 from irlx.interpreter.values import RecordValue, Value
 
 
 @dataclass(frozen=True)
 class Function:
-    """A built-in: types of its parameters, and its meaning on values that fit them."""
+    """A built-in: types of its parameters (several where one may be any of them), and its meaning
+    on values that fit them."""
 
     name: str
-    parameters: tuple[Type, ...]
+    parameters: tuple[Type | tuple[Type, ...], ...]
     apply: Callable[..., Value]
 
 
@@ -63,7 +64,9 @@ def compose(first: RecordValue, second: RecordValue) -> RecordValue:
 
 
 def inverse(value: RecordValue) -> RecordValue:
-    """Pose of the base in the frame of `value`."""
+    """Pose of the base in the frame of the POSE `value`, or the opposite turn of an ORIENTATION."""
+    if value.type == ORIENTATION:
+        return orientation(q.conjugate(quaternion_of(value)))
     at, turned = parts_of(value)
     back = q.conjugate(turned)
     x, y, z = q.rotate(back, at)
@@ -102,7 +105,7 @@ _FUNCTIONS = (
     Function("ORIZYX", _THREE, _angles("ZYX")),
     Function("POSITION", _THREE, lambda x, y, z: position((x, y, z))),
     Function("POSE", (POSITION, ORIENTATION), lambda at, turned: RecordValue(POSE, (at, turned))),
-    Function("INV", (POSE,), inverse),
+    Function("INV", ((POSE, ORIENTATION),), inverse),
     Function("NORM", (POSITION,), lambda v: q.norm(vector_of(v))),
     Function("SQRT", _ONE, math.sqrt),
     Function("SIN", _ONE, lambda a: math.sin(math.radians(a))),
@@ -114,7 +117,7 @@ _FUNCTIONS = (
     Function("ATAN2", _TWO, lambda y, x: math.degrees(math.atan2(y, x))),
     Function("EXP", _ONE, math.exp),
     Function("LN", _ONE, math.log),
-    Function("ABS", _ONE, abs),
+    Function("ABS", ((INT, REAL),), abs),
 )
 
 FUNCTIONS: Mapping[str, Function] = {function.name.casefold(): function for function in _FUNCTIONS}

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 
-from irlx.interpreter.conversion import Where, whole_number
+from irlx.interpreter.conversion import Where, finite, whole_number
 from irlx.interpreter.errors import fail
 from irlx.interpreter.functions import (
     compose,
@@ -45,7 +44,7 @@ def unary(op: str, value: Value, where: Where) -> Value:
         if op == "+":
             return value
         return whole_number(-value, "the result", where) if isinstance(value, int) else -value
-    raise fail("IRL227", where.source, where.span, op=op, left="no operand", right=type_name(value))
+    raise fail("IRL227", where.source, where.span, op=op, operands=type_name(value))
 
 
 def binary(op: str, left: Value, right: Value, where: Where) -> Value:
@@ -67,9 +66,9 @@ def binary(op: str, left: Value, right: Value, where: Where) -> Value:
     elif op == "*" and isinstance(left, int | float) and is_number(left) and isinstance(right, RecordValue):
         result = _scaled(right, float(left)) if right.type == POSITION else None
     if result is None:
-        data = {"op": op, "left": type_name(left), "right": type_name(right)}
-        raise fail("IRL227", where.source, where.span, **data)
-    return result
+        operands = f"{type_name(left)} and {type_name(right)}"
+        raise fail("IRL227", where.source, where.span, op=op, operands=operands)
+    return finite(result, where)
 
 
 def _compare_or_compute(op: str, left: Number, right: Number, where: Where) -> Value | None:
@@ -93,11 +92,7 @@ def _compare_or_compute(op: str, left: Number, right: Number, where: Where) -> V
     if op not in computed:
         return None
     number = computed[op]()
-    if isinstance(number, int):
-        return whole_number(number, "the result", where)
-    if not math.isfinite(number):
-        raise fail("IRL503", where.source, where.span, what="the result (a REAL beyond 1.8E308)")
-    return number
+    return whole_number(number, "the result", where) if isinstance(number, int) else number
 
 
 def _geometric(op: str, left: RecordValue, right: Value, where: Where) -> Value | None:
@@ -106,7 +101,7 @@ def _geometric(op: str, left: RecordValue, right: Value, where: Where) -> Value 
     if left.type == POSITION and isinstance(right, int | float) and is_number(right) and op in ("*", "/"):
         if op == "/" and right == 0:
             raise fail("IRL502", where.source, where.span)
-        return _scaled(left, float(right) if op == "*" else 1.0 / right)
+        return _scaled(left, float(right)) if op == "*" else _divided(left, float(right))
     return None
 
 
@@ -137,3 +132,9 @@ def _shifted(at: Vector, by: Vector, op: str) -> RecordValue:
 def _scaled(value: RecordValue, factor: float) -> RecordValue:
     x, y, z = vector_of(value)
     return position((x * factor, y * factor, z * factor))
+
+
+def _divided(value: RecordValue, divisor: float) -> RecordValue:
+    # Not times 1 / divisor, which is infinite for the smallest divisors even where the quotients are not.
+    x, y, z = vector_of(value)
+    return position((x / divisor, y / divisor, z / divisor))

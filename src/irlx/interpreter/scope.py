@@ -20,7 +20,8 @@ class Variable:
 
 @dataclass
 class Scope:
-    """Names of one program by casefolded spelling."""
+    """Names of one program by casefolded spelling; `announced` are those it declares anywhere."""
 
     variables: dict[str, Variable] = field(default_factory=dict)
     types: dict[str, Type] = field(default_factory=dict)
+    announced: frozenset[str] = frozenset()

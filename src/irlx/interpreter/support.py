@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import fields
 
 from irlx.diagnostics import Diagnostic, Place, SourceText, report
 from irlx.interpreter.functions import FUNCTIONS
-from irlx.language import tree
+from irlx.interpreter.setting import SYSTEM_REALS
+from irlx.interpreter.system_names import LATER_TYPES, system_name
+from irlx.language import builtins, tree
+from irlx.language.symbols import declared_symbols
 
 _DECLARATIONS = (
     tree.VarDeclaration,
@@ -26,6 +28,9 @@ _STATEMENTS = (
     tree.CyclicStart,
     tree.CyclicEnd,
 )
+_READ_ONLY_FUNCTIONS = (frozenset(builtins.FUNCTIONS) | frozenset(builtins.TYPES)) - frozenset(FUNCTIONS)
+_ACTUAL = "r_joint_act"
+_EXECUTED_NAMES = frozenset({_ACTUAL, *(name.casefold() for name in SYSTEM_REALS)})
 MOVE_PARAMS = {
     "speed": "R_SPEED",
     "acc": "R_ACC",
@@ -94,9 +99,12 @@ def missing_in_move(move: tree.Move) -> tuple[tree.Node, str] | None:
 
 def unsupported(program: tree.Program, source: SourceText) -> list[Diagnostic]:
     """A warning, IRL591, for every part of a program that a run would stop at."""
+    declared = frozenset(symbol.name.key for symbol in declared_symbols(program.declarations))
     found: list[tuple[tree.Node, str]] = []
     for declaration in program.declarations:
-        if not isinstance(declaration, _DECLARATIONS):
+        if isinstance(declaration, _DECLARATIONS):
+            found += _parts(declaration, declared)
+        else:
             found.append((declaration, part_name(declaration)))
     for statement in program.body:
         if not isinstance(statement, _STATEMENTS):
@@ -105,26 +113,24 @@ def unsupported(program: tree.Program, source: SourceText) -> list[Diagnostic]:
         missing = missing_in_move(statement) if isinstance(statement, tree.Move) else None
         if missing is not None:
             found.append(missing)
-        found += [(call, f"the function {call.name.name}") for call in _calls(statement)]
+        found += _parts(statement, declared)
     return [report("IRL591", Place.in_text(source, node.span), what=what) for node, what in found]
 
 
-def _calls(node: object) -> Iterator[tree.FunctionCall]:
-    """Calls of functions that are not executed, in a statement of the executed kinds."""
-    if isinstance(node, tree.FunctionCall) and node.name.key not in FUNCTIONS:
-        yield node
-    if isinstance(node, tree.Node):
-        for field in fields(node):
-            yield from _calls(getattr(node, field.name))
-    elif isinstance(node, tuple):
-        for item in node:
-            yield from _calls(item)
+def _parts(root: tree.Node, declared: frozenset[str]) -> Iterator[tuple[tree.Node, str]]:
+    """Parts that are not executed in a declaration or statement of the executed kinds, and their names."""
+    for node in tree.walk(root):
+        match node:
+            case tree.FunctionCall(name=name) if name.key in (_READ_ONLY_FUNCTIONS | declared):
+                yield node, f"the function {name.name}"
+            case tree.NamedType(name=name) if name.key in LATER_TYPES - declared:
+                yield node, f"the type {name.name}"
+            case tree.Designator(base=name) if name.key not in _EXECUTED_NAMES | declared:
+                what = system_name(name)
+                if what:
+                    yield name, what
 
 
-def reads_actual(node: object) -> bool:
+def reads_actual(node: tree.Node) -> bool:
     """Whether a statement reads R_JOINT_ACT, the posture of the robot at that moment."""
-    if isinstance(node, tree.Designator) and node.base.key == "r_joint_act":
-        return True
-    if isinstance(node, tree.Node):
-        return any(reads_actual(getattr(node, field.name)) for field in fields(node))
-    return isinstance(node, tuple) and any(reads_actual(item) for item in node)
+    return any(isinstance(part, tree.Designator) and part.base.key == _ACTUAL for part in tree.walk(node))

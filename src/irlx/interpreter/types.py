@@ -63,6 +63,8 @@ POSITION = _reals("POSITION", "X", "Y", "Z")
 ORIENTATION = _reals("ORIENTATION", "Q1", "Q2", "Q3", "Q4")
 POSE = Record("POSE", (("POS", POSITION), ("ORI", ORIENTATION)))
 
+ADD_JOINT = Record("ADD_JOINT", ())
+
 JOINT_RECORDS = {
     "main_joint": "A{}",
     "main_joint_min": "A{}.MIN",
@@ -90,6 +92,37 @@ def predefined_types(joints: int) -> dict[str, Type]:
     }
     for key, pattern in JOINT_RECORDS.items():
         types[key] = _reals(key.upper(), *(pattern.format(number) for number in range(1, joints + 1)))
-    types["add_joint"] = Record("ADD_JOINT", ())
-    types["joint"] = Record("JOINT", (("M_JOINT", types["main_joint"]), ("A_JOINT", types["add_joint"])))
+    types["add_joint"] = ADD_JOINT
+    types["joint"] = joint_type(types["main_joint"])
     return types
+
+
+def joint_type(main: Type) -> Record:
+    """JOINT with a type of main joints."""
+    return Record("JOINT", (("M_JOINT", main), ("A_JOINT", ADD_JOINT)))
+
+
+def ambiguous_field(record: Record, name: str) -> tuple[str, str] | None:
+    """Field, and the path inside it, that the dotted field `name` of the same record could also mean."""
+    words = name.split(".")
+    for used in range(1, len(words)):
+        field, rest = ".".join(words[:used]), words[used:]
+        position = record.index.get(field.casefold())
+        if position is not None and _leads_somewhere(record.fields[position][1], rest):
+            return record.fields[position][0], ".".join(rest)
+    return None
+
+
+def _leads_somewhere(type: Type, words: list[str]) -> bool:
+    """Whether words joined by dots are a path of fields in a type."""
+    if not words:
+        return True
+    if not isinstance(type, Record):
+        return False
+    positions = [
+        (used, type.index.get(".".join(words[:used]).casefold())) for used in range(1, len(words) + 1)
+    ]
+    return any(
+        position is not None and _leads_somewhere(type.fields[position][1], words[used:])
+        for used, position in positions
+    )

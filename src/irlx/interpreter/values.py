@@ -64,6 +64,38 @@ def is_set(value: Value) -> bool:
     return not isinstance(value, Unset)
 
 
+def unset_part(value: Value) -> str:
+    """Selector of the first part without a value, of a value that is not set; '' where none has one."""
+    if not isinstance(value, RecordValue | ArrayValue) or _nothing_set(value):
+        return ""
+    first = next(index for index, part in enumerate(value.values) if not is_set(part))
+    return _selector(value.type, first) + unset_part(value.values[first])
+
+
+def _nothing_set(value: Value) -> bool:
+    if isinstance(value, RecordValue | ArrayValue):
+        return all(_nothing_set(part) for part in value.values)
+    return isinstance(value, Unset)
+
+
+def _selector(type: Record | Array, position: int) -> str:
+    """What a program writes behind a structure for its part at a position."""
+    if isinstance(type, Record):
+        return f".{type.fields[position][0]}"
+    indices = []
+    for low, high in reversed(type.ranges):
+        position, offset = divmod(position, high - low + 1)
+        indices.append(str(low + offset))
+    return f"[{', '.join(reversed(indices))}]"
+
+
+def is_of_type(value: Value, type: Type) -> bool:
+    """Whether a value is of a type as it stands, without conversion."""
+    if isinstance(value, RecordValue | ArrayValue):
+        return value.type == type
+    return isinstance(type, Simple) and type_name(value) == type.name
+
+
 def type_name(value: Value) -> str:
     """Name of a value's type as messages give it."""
     if isinstance(value, RecordValue | ArrayValue):

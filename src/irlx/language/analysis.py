@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TypeAlias
@@ -17,10 +17,13 @@ from irlx.language.scope import Scope
 from irlx.language.switches import check_freeze, check_switches
 from irlx.language.symbols import Symbol
 
-__all__ = ["Analysis", "Resolver", "analyse"]
+__all__ = ["Analysis", "CellNames", "Resolver", "analyse"]
 
 Resolver: TypeAlias = "Callable[[str], Analysis | None]"
 """Gives the analysis of a module by the name that FROM uses, or None where there is no such module."""
+
+CellNames: TypeAlias = "Callable[[tree.Program], Collection[str]]"
+"""Gives the names that the cell of a program adds to it, those of its frames."""
 
 
 @dataclass(frozen=True)
@@ -44,15 +47,19 @@ class Analysis:
         return any(diagnostic.is_error for diagnostic in self.diagnostics)
 
 
-def analyse(source: SourceText, resolver: Resolver | None = None) -> Analysis:
+def analyse(
+    source: SourceText, resolver: Resolver | None = None, cell_names: CellNames | None = None
+) -> Analysis:
     """Parse and check a text; never raises for what a text may hold.
 
-    Without a `resolver` imported names are taken as declared and modules are not looked at.
+    Without a `resolver` imported names are taken as declared and modules are not looked at. What
+    `cell_names` gives counts as constants of the program, which its own declarations may hide.
     """
     parsed = parse(source)
     if parsed.tree is None:
         return Analysis(source, None, _in_order(parsed.findings), parsed.comments)
-    scope, findings = check_names(parsed.tree, source, complete=parsed.complete)
+    given = cell_names(parsed.tree) if cell_names and isinstance(parsed.tree, tree.Program) else ()
+    scope, findings = check_names(parsed.tree, source, given, complete=parsed.complete)
     findings += _static_findings(parsed.tree, source)
     if resolver is not None:
         findings += _import_findings(parsed.tree, scope, resolver)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Iterable, Sequence
 from typing import Any
 
 from irlx.diagnostics import Diagnostic, Place, SourceText, Span, report
@@ -18,7 +18,7 @@ from irlx.language.builtins import (
 )
 from irlx.language.labels import check_jumps
 from irlx.language.scope import Scope
-from irlx.language.symbols import Routine, declared_symbols, parameter_symbols
+from irlx.language.symbols import Routine, Symbol, declared_symbols, parameter_symbols
 
 __all__ = ["NamePass", "check_names"]
 
@@ -27,14 +27,14 @@ _NOT_SET = {"procedure": "a procedure", "function": "a function", "robot": "a ro
 
 
 def check_names(
-    root: tree.Program | tree.Module, source: SourceText, *, complete: bool
+    root: tree.Program | tree.Module, source: SourceText, given: Collection[str] = (), *, complete: bool
 ) -> tuple[Scope, list[Diagnostic]]:
-    """Scope of a program or module and the findings on its names.
+    """Scope of a program or module and the findings on its names; `given` are constants of its cell.
 
     Without `complete`, unknown names prove nothing, because their declarations may have been dropped.
     """
     datalist = any(isinstance(d, tree.ImportDatalist) for d in root.declarations)
-    scope = Scope(source, open=datalist or not complete)
+    scope = Scope(source, given=given, open=datalist or not complete)
     names = NamePass(scope, complete=complete)
     names.declarations(root.declarations)
     if isinstance(root, tree.Program):
@@ -53,7 +53,7 @@ class NamePass:
 
     def declarations(self, declarations: Sequence[tree.Declaration]) -> None:
         """Declare everything, then look at what the declarations use."""
-        self.findings += self.scope.declare(declared_symbols(declarations))
+        self._declare(declared_symbols(declarations))
         for declaration in declarations:
             if isinstance(declaration, (tree.ProcedureDeclaration, tree.FunctionDeclaration)):
                 self._routine(declaration)
@@ -68,9 +68,18 @@ class NamePass:
         if self._complete:
             self.findings += check_jumps(body, self.scope.source)
 
+    def _declare(self, symbols: Iterable[Symbol]) -> None:
+        usable = []
+        for symbol in symbols:
+            if symbol.name.key in SYSTEM_VARIABLES and symbol.kind != "type":
+                self._add("IRL216", symbol.name.span, name=symbol.name.name)
+            else:
+                usable.append(symbol)
+        self.findings += self.scope.declare(usable)
+
     def _routine(self, routine: Routine) -> None:
         inner = NamePass(Scope(self.scope.source, self.scope), self._reported, complete=self._complete)
-        inner.findings += inner.scope.declare(parameter_symbols(routine))
+        inner._declare(parameter_symbols(routine))
         for parameter in routine.parameters:
             inner._uses(parameter.type)
         if isinstance(routine, tree.FunctionDeclaration):
@@ -105,7 +114,8 @@ class NamePass:
 
     def _designator(self, node: tree.Designator) -> None:
         name = node.base
-        if name.key in SYSTEM_VARIABLES or self.scope.value(name.key) is not None:
+        known = name.key in SYSTEM_VARIABLES or self.scope.value(name.key) is not None
+        if known or self.scope.is_given(name.key):
             return
         if is_port_name(name.key):
             if name.key not in self._reported:
@@ -120,7 +130,9 @@ class NamePass:
         if key in FUNCTIONS or key in TYPES or self.scope.type(key) is not None:
             return
         symbol = self.scope.value(key)
-        if symbol is None:
+        if self.scope.is_given(key):
+            self._add("IRL209", node.name.span, name=node.name.name)
+        elif symbol is None:
             self._unknown("IRL206", node.name, self.scope.known_functions())
         elif symbol.kind in ("variable", "constant", "parameter", "input", "output"):
             self._add("IRL209", node.name.span, name=node.name.name)
@@ -151,6 +163,8 @@ class NamePass:
         symbol = self.scope.value(target.base.key)
         kind = symbol.kind if symbol is not None else ""
         words = _READ_ONLY.get(kind) or _NOT_SET.get(kind)
+        if self.scope.is_given(target.base.key):
+            words = "a frame of the cell"
         if words:
             self._add("IRL211", target.base.span, name=target.base.name, kind=words)
 

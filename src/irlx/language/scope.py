@@ -14,13 +14,22 @@ __all__ = ["Scope"]
 class Scope:
     """Names of a program or routine; types have a space of their own, `POSE: pose` is no clash.
 
-    `open` scopes hold names that the text does not show, those of a data list.
+    `open` scopes hold names that the text does not show, those of a data list; `given` are names that
+    the cell adds, hidden by what the text declares.
     """
 
-    def __init__(self, source: SourceText, outer: Scope | None = None, *, open: bool = False) -> None:
+    def __init__(
+        self,
+        source: SourceText,
+        outer: Scope | None = None,
+        given: Iterable[str] = (),
+        *,
+        open: bool = False,
+    ) -> None:
         self.source = source
         self.outer = outer
         self.open: bool = open or (outer is not None and outer.open)
+        self.given: dict[str, str] = {name.casefold(): name for name in given}
         self.values: dict[str, Symbol] = {}
         self.types: dict[str, Symbol] = {}
 
@@ -50,6 +59,12 @@ class Scope:
         """The innermost symbol of that name that is no type."""
         return self.values.get(key) or (self.outer.value(key) if self.outer else None)
 
+    def is_given(self, key: str) -> bool:
+        """Whether a name means something of the cell."""
+        if self.value(key) is not None:
+            return False
+        return key in self.given or (self.outer is not None and self.outer.is_given(key))
+
     def type(self, key: str) -> Symbol | None:
         """The innermost declared type of that name; an imported name may be one."""
         found = self.types.get(key)
@@ -60,7 +75,7 @@ class Scope:
 
     def known_values(self) -> list[str]:
         """Spellings of everything that may stand where a value is read, to suggest from."""
-        return [*self._spellings("procedure"), *SYSTEM_VARIABLES.values()]
+        return [*self._spellings("procedure"), *self._given(), *SYSTEM_VARIABLES.values()]
 
     def known_types(self) -> list[str]:
         """Spellings of all types."""
@@ -78,6 +93,9 @@ class Scope:
     def _spellings(self, without: str) -> list[str]:
         outer = self.outer._spellings(without) if self.outer else []
         return outer + [s.name.name for s in self.values.values() if s.kind != without]
+
+    def _given(self) -> list[str]:
+        return [*(self.outer._given() if self.outer else []), *self.given.values()]
 
     def _of_kind(self, kind: str) -> list[str]:
         outer = self.outer._of_kind(kind) if self.outer else []

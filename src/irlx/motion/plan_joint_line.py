@@ -12,7 +12,7 @@ from irlx.blocks import MotionLaw
 from irlx.diagnostics import Place, report
 from irlx.motion.errors import MotionError
 from irlx.motion.trapezoid import Trapezoid
-from irlx.motion.whole_ticks import whole_ticks
+from irlx.motion.whole_ticks import ticks_of_move
 from irlx.robot.limits import JointLimits
 
 Array = NDArray[np.float64]
@@ -57,7 +57,8 @@ def plan_joint_line(
     """Plan the motion between two postures (n,) under the speed and acceleration limits in force.
 
     SPEED_PTP and ACC_PTP scale the joints' limits. Raises MotionError: IRL421 where TIME is too
-    short, IRL423 where a joint that moves has no speed limit and TIME is not given.
+    short, IRL423 where a joint that moves has no speed limit and TIME is not given, IRL426 where a joint
+    that would move has a speed or acceleration limit of 0, IRL425 where it would take too long.
     """
     way = end - start
     if not np.any(way):
@@ -65,6 +66,7 @@ def plan_joint_line(
     speed, acc = _joint_rates(way, limits)
     speed, acc = speed * law.speed_ptp * (1.0 - RESERVE), acc * law.acc_ptp * (1.0 - RESERVE)
     moving = way != 0.0
+    _check_movable(moving & ((speed == 0.0) | (acc == 0.0)), joint_names, place)
     rate = float(np.min(speed[moving] / np.abs(way[moving])))
     if not np.isfinite(rate):
         if law.duration is None:
@@ -76,7 +78,7 @@ def plan_joint_line(
         acc = np.where(np.isfinite(acc), acc, speed / RAMP_TIME)
         trapezoid = Trapezoid.fastest(1.0, rate, float(np.min(acc[moving] / np.abs(way[moving]))))
     trapezoid = _with_duration(trapezoid, law, place)
-    ticks = whole_ticks(trapezoid.duration, dt)
+    ticks = ticks_of_move(trapezoid.duration, dt, place)
     return PlannedJointLine(start, end, trapezoid.stretched(ticks * dt), ticks)
 
 
@@ -84,6 +86,12 @@ def _joint_rates(way: Array, limits: JointLimits) -> tuple[Array, Array]:
     """Speed and acceleration each joint may use on its way; ramps need both signs of acceleration."""
     speed = np.where(way >= 0.0, limits.speed_upper, -limits.speed_lower)
     return speed, np.minimum(limits.acceleration_upper, -limits.acceleration_lower)
+
+
+def _check_movable(held: NDArray[np.bool_], joint_names: tuple[str, ...], place: Place) -> None:
+    if np.any(held):
+        joint = joint_names[int(np.flatnonzero(held)[0])]
+        raise MotionError(report("IRL426", place, joint=joint))
 
 
 def _with_duration(fastest: Trapezoid, law: MotionLaw, place: Place) -> Trapezoid:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.diagnostics import Diagnostic, Place, report
+from irlx.motion.line import Line
 from irlx.pacing.row_check import BrokenBound
 from irlx.pacing.walk import Halt
 from irlx.robot.description import RobotDescription
@@ -46,7 +47,7 @@ def joint_value(robot: RobotDescription, joint: int, value: float, per: str = ""
 
 
 def explain_halt(
-    halt: Halt, around: Surroundings, length: float, goal: Nearest | None, place: Place
+    halt: Halt, around: Surroundings, path: Line, goal: Nearest | None, place: Place
 ) -> Diagnostic:
     """Diagnostic of a tick that no joint step can do (IRL520: bounds, IRL521: out of reach)."""
     robot = around.kinematics.description
@@ -55,21 +56,17 @@ def explain_halt(
         solution.q, around.kinematics.target(halt.demand.rotation, halt.demand.position)
     )
     sigma = float(scaled_singular_values(jacobian[:, around.free], robot.reach)[-1])
-    unit, scale = ("deg", np.degrees(1.0)) if length <= np.pi and _only_turns(halt) else ("mm", 1000.0)
+    unit, scale = ("deg", np.degrees(1.0)) if path.is_pure_turn else ("mm", 1000.0)
     held = _held_joints(halt, around)
     data: dict[str, Any] = {
         "tick": halt.demand.tick,
         "way": f"{halt.demand.s * scale:.6g}",
-        "length": f"{length * scale:.6g} {unit}",
+        "length": f"{path.length * scale:.6g} {unit}",
         "held": "; ".join(held) if held else _nearest_to_limit(solution.q, around),
         "sigma": f"{sigma:.2g}",
         "missing": _missing(solution.twist, goal),
     }
     return report("IRL520" if held else "IRL521", place, **data)
-
-
-def _only_turns(halt: Halt) -> bool:
-    return float(np.linalg.norm(halt.demand.twist[:3])) == 0.0
 
 
 def _missing(twist: Array, goal: Nearest | None) -> str:

@@ -32,7 +32,7 @@ from irlx.pacing.impossible import Surroundings, explain_broken_row, explain_hal
 from irlx.pacing.options import LimitsInForce, Options, limits_in_force
 from irlx.pacing.row_check import broken_bound
 from irlx.pacing.rows import MotionRows
-from irlx.pacing.switches import check_freeze, check_joint_target, check_limit
+from irlx.pacing.switches import check_freeze, check_inside, check_joint_target, check_limit
 from irlx.pacing.walk import Walk, walk
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
@@ -105,6 +105,8 @@ class Pacer:
             place = self._locate(clause.origin)
             self.warnings += check_limit(clause, self._robot, self._setup.limits, self.q, place)
         in_force = limits_in_force(self._setup.limits, self.options, block.limits)
+        # A clause may have let a joint out of the switch that holds again now.
+        check_inside(self.q, self._robot, in_force.limits, self._locate(block.origin))
         rows = (
             self._joint_line(block, in_force) if block.kind is MoveKind.PTP else self._line(block, in_force)
         )
@@ -136,7 +138,7 @@ class Pacer:
         )
         if walked.halt is not None:
             goal = goal_shortfall(around, plan.path.end_rotation, plan.path.end_position, self.q)
-            raise PacingError(explain_halt(walked.halt, around, plan.path.length, goal, place))
+            raise PacingError(explain_halt(walked.halt, around, plan.path, goal, place))
         self._check_rows(walked.q, in_force.limits, place)
         self._warn_of_posture_left(walked.q[-1], posture, place)
         return self._line_rows(block, plan.path, walked)

@@ -48,10 +48,16 @@ def check_limit(
     own_lower, own_upper = limits.pair(limit.kind.value.lower())
     lower, upper = np.maximum(own_lower, limit.range.lower), np.minimum(own_upper, limit.range.upper)
     if limit.kind is LimitKind.POSITION:
-        outside = np.flatnonzero((q < lower) | (q > upper))
-        if outside.size:
-            raise PacingError([_outside(int(joint), q, lower, upper, robot, place) for joint in outside])
+        check_inside(q, robot, limits.with_pair("position", lower, upper), place)
     return _wider(limit.kind, limit.range, robot, limits, place)
+
+
+def check_inside(q: Array, robot: RobotDescription, limits: JointLimits, place: Place) -> None:
+    """Raise PacingError, IRL345, for every joint of q (n,) outside the limits that hold from here."""
+    lower, upper = limits.position_lower, limits.position_upper
+    outside = np.flatnonzero((q < lower) | (q > upper))
+    if outside.size:
+        raise PacingError([_outside(int(joint), q, lower, upper, robot, place) for joint in outside])
 
 
 def _range_errors(

@@ -66,8 +66,10 @@ def limit_uses(
     q: Array, qd: Array, qdd: Array, limits: JointLimits, joint_names: Sequence[str]
 ) -> tuple[LimitUse, ...]:
     """Largest use of position, speed and acceleration limits by rows (N, n), of the kinds that exist."""
-    middle = 0.5 * (limits.position_lower + limits.position_upper)
-    middle = np.where(np.isfinite(middle), middle, 0.0)
+    # The range of a joint without a bound on one side has no middle: its shares count from 0.
+    both = np.isfinite(limits.position_lower) & np.isfinite(limits.position_upper)
+    lower, upper = (np.where(both, side, 0.0) for side in (limits.position_lower, limits.position_upper))
+    middle = 0.5 * (lower + upper)
     found = [
         _worst("position", q, limits.position_lower, limits.position_upper, middle, joint_names),
         _worst("speed", qd, limits.speed_lower, limits.speed_upper, np.zeros_like(middle), joint_names),

@@ -97,6 +97,9 @@ def _intersect(lowers: Array, uppers: Array) -> StepBounds:
     lower, upper = lowers[lower_source, joints], uppers[upper_source, joints]
     touching = (lower > upper) & (lower - upper <= EMPTY_INTERVAL)
     if np.any(touching):
-        # Braking room and acceleration meet exactly when a joint brakes at its hardest.
-        lower = np.where(touching, upper, lower)
+        # Braking room and acceleration meet exactly when a joint brakes at its hardest. The side that
+        # guards the position limit stays: given way there, the next tick would find less room than it needs.
+        guards_limit = (lower_source == BoundSource.POSITION) | (lower_source == BoundSource.BRAKING)
+        upper = np.where(touching & guards_limit, lower, upper)
+        lower = np.where(touching & ~guards_limit, upper, lower)
     return StepBounds(lower, upper, lower_source, upper_source)

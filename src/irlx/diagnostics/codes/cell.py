@@ -8,7 +8,7 @@ CELL = (
     error("IRL603", "{key}: expected {expected}, found {found}"),
     error("IRL604", "{key} needs one value a joint: {joints}, found {found}"),
     error("IRL605", "the {kind} limit of {joint} is no range: {cause} (found {found})"),
-    error("IRL606", "{key}: the robot has no joint '{name}'; it has {known}"),
+    error("IRL606", "{key}: the robot has no joint '{name}'{near}", "it has {known}"),
     warning("IRL607", "[{section}] is kept for a later version and has no effect yet"),
     error(
         "IRL609",

@@ -22,6 +22,7 @@ NAMES: tuple[Code, ...] = (
     warning("IRL213", "'{name}' hides a name of the program", "rename the local one if that is not meant"),
     error("IRL214", "the record has two fields '{name}'"),
     error("IRL215", "unknown label '{name}'{near}", "write 'name:' before the statement to jump to"),
+    error("IRL216", "'{name}' is a system variable: assign to it instead of declaring it"),
     error("IRL217", "EXIT outside of a loop", "EXIT leaves FOR, WHILE or REPEAT; HALT ends the program"),
     error("IRL218", "no module '{module}'", "a module NAME is the file NAME.irl beside the program"),
     error("IRL219", "{file} does not export '{name}'{near}", "add it to an EXPORT of the module"),

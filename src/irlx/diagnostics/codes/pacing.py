@@ -46,5 +46,15 @@ PACING = (
         "PTP needs a speed limit of every joint that moves; {joint} has none",
         "give robot.limits.speed in the cell file, or JOINTSPEEDLIMIT, or TIME",
     ),
+    error(
+        "IRL425",
+        "this move would take {duration} s, {ticks} ticks; a move may have at most {most}",
+        "check the target, and the units of SPEED, ACC and TIME; a longer tick needs fewer of them",
+    ),
+    error(
+        "IRL426",
+        "PTP has to move {joint}, whose speed or acceleration limit is 0",
+        "widen the limit, or choose a target that leaves the joint where it is",
+    ),
     error("IRL424", "the target puts {joint} at {value}, outside its limits {lower} to {upper}"),
 )

@@ -9,9 +9,10 @@ RUN = (
         "assign to it, or give it an initial value where it is declared",
     ),
     error("IRL502", "division by zero"),
-    error("IRL503", "{what} leaves the range of INT, -2^63 to 2^63 - 1"),
+    error("IRL503", "{what} leaves the range of {type}", "{range}"),
     error("IRL504", "index {index} of '{name}' is outside {low}..{high}"),
     error("IRL507", "an array of {size} elements is too large; at most {most} are kept", "split it"),
+    error("IRL508", "the range {low}..{high} is empty", "the lower bound comes first"),
     error("IRL505", "{param} must be {expected}, found {value}"),
     error("IRL506", "{function} has no value at {value}"),
     error(

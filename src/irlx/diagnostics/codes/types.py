@@ -9,9 +9,14 @@ TYPES = (
         "give it one field a joint: {names}",
     ),
     error("IRL222", "expected {expected}, found {found}"),
-    error("IRL223", "{type} takes {expected} values, found {found}"),
+    error("IRL223", "{type} takes {expected}, found {found}"),
     error("IRL225", "{type} has no field '{name}'{near}"),
-    error("IRL227", "{op} is not defined for {left} and {right}"),
+    error(
+        "IRL226",
+        "'{name}' could mean the field {name}, or {rest} of the field {field}",
+        "rename one of the two",
+    ),
+    error("IRL227", "{op} is not defined for {operands}"),
     error("IRL228", "{function} takes {expected}, found {found}"),
     error(
         "IRL229",

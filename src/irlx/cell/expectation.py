@@ -1,0 +1,46 @@
+"""What a cell file may hold at a key, in words of the file instead of pydantic's."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+_WORDS = {
+    "string_type": "a text",
+    "float_type": "a number",
+    "finite_number": "a finite number",
+    "greater_than": "a number greater than {gt:g}",
+    "greater_than_equal": "a number of at least {ge:g}",
+    "less_than_equal": "a number of at most {le:g}",
+    "list_type": "a list",
+    "too_short": "{min_length} numbers",
+    "too_long": "{max_length} numbers",
+}
+_TABLES = ("model_type", "model_attributes_type", "dict_type")
+_COUNTS = {2: "two", 3: "three"}
+
+
+def expectation(fault: Any) -> str:
+    """What pydantic's error `fault` expects; own messages of validators stand as they are."""
+    kind = fault["type"]
+    if kind in _TABLES:
+        return "a table"
+    if kind not in _WORDS:
+        return str(fault["msg"])
+    data = {name: _COUNTS.get(value, value) if "length" in name else value for name, value in _data(fault)}
+    return _WORDS[kind].format_map(data)
+
+
+def _data(fault: Any) -> list[tuple[str, Any]]:
+    return list(fault.get("ctx", {}).items())
+
+
+def as_written(value: object) -> str:
+    """A value of a TOML file as the file has it."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, list):
+        return f"[{', '.join(as_written(item) for item in value)}]"
+    if isinstance(value, Mapping):
+        return "a table"
+    return repr(value) if isinstance(value, str) else str(value)
