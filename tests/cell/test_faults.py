@@ -20,6 +20,8 @@ LIMIT = f"{ENTRY}, for each joint"
         (b"a = \n", "line 1"),
         (b"\xff\xfe", "byte 0 is no UTF-8"),
         (b"# \xe9\n", "byte 2 is no UTF-8"),
+        (b"a = " + b"1" * 5000, "digits"),
+        (b"a = " + b"[" * 5000, "recursion"),
     ],
 )
 def test_not_toml(faults, text, cause):
@@ -259,7 +261,9 @@ def test_a_urdf_that_cannot_be_used(faults, content, cause):
 
 
 def test_fewer_than_six_axes(faults, chain):
-    expected = "4 joints move the tool frame link4 (j1, j2, j3, j4); a pose needs at least six"
+    expected = (
+        "the joints that move the tool frame link4 are j1, j2, j3, j4: 4, but a pose needs at least six"
+    )
     assert faults("[robot]\nmodel = 'c.urdf'\n", c=chain(4)) == [("IRL613", "robot.model", expected)]
 
 

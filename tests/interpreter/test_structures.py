@@ -226,12 +226,12 @@ def test_the_posture_of_the_robot_cannot_be_set(run_error):
     assert message.startswith("'R_JOINT_ACT' is ")
 
 
-# The analysis takes every declaration as known everywhere; the run declares one after the other.
+# Types and constants are declared before variables, those of a kind one after the other.
 @pytest.mark.parametrize(
     ("declarations", "code", "marked"),
     [
         ("VAR REAL: x := y; REAL: y := 1;", "IRL201", "y"),
-        ("VAR mine: x; TYPE RECORD REAL: a; ENDRECORD = mine;", "IRL204", "mine"),
+        ("TYPE mine = other; RECORD REAL: a; ENDRECORD = mine;", "IRL204", "mine"),
     ],
 )
 def test_names_used_before_their_declaration(run_error, declarations, code, marked):

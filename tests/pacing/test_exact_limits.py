@@ -5,10 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-pytestmark = [
-    pytest.mark.req("MOT-20"),
-    pytest.mark.xfail(strict=True, reason="start + (limit - start) rounds beyond the limit: IRL424, IRL523"),
-]
+pytestmark = pytest.mark.req("MOT-20")
 
 
 def meeting_the_limit(kit, seed: int, dt: float):

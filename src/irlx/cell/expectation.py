@@ -18,6 +18,7 @@ _WORDS = {
 }
 _TABLES = ("model_type", "model_attributes_type", "dict_type")
 _COUNTS = {2: "two", 3: "three"}
+_MOST_LETTERS = 80
 
 
 def expectation(fault: Any) -> str:
@@ -36,11 +37,16 @@ def _data(fault: Any) -> list[tuple[str, Any]]:
 
 
 def as_written(value: object) -> str:
-    """A value of a TOML file as the file has it."""
+    """A value of a TOML file as the file has it, its beginning where it is long."""
+    text = _text(value)
+    return text if len(text) <= _MOST_LETTERS else f"{text[:_MOST_LETTERS]}..."
+
+
+def _text(value: object) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, list):
-        return f"[{', '.join(as_written(item) for item in value)}]"
+        return f"[{', '.join(_text(item) for item in value)}]"
     if isinstance(value, Mapping):
         return "a table"
     return repr(value) if isinstance(value, str) else str(value)

@@ -46,7 +46,8 @@ def read_cell_file(content: bytes, file: str) -> CellFile:
     except UnicodeDecodeError as cause:
         message = f"byte {cause.start} is no UTF-8"
         raise CellError(report("IRL601", Place(file), cause=message)) from cause
-    except tomllib.TOMLDecodeError as cause:
+    except (ValueError, RecursionError) as cause:
+        # Besides its own errors tomllib lets those of Python through: too many digits, too deep lists.
         raise CellError(report("IRL601", Place(file), cause=str(cause))) from cause
     try:
         return CellFile.model_validate(table)

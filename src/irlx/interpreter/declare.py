@@ -30,9 +30,10 @@ from irlx.language.symbols import declared_symbols
 def declared_scope(program: tree.Program, source: SourceText, setting: Setting) -> Scope:
     """Scope of a program: system variables, poses of the cell, then what the program declares.
 
-    Raises InterpreterError: IRL221, IRL222 for a joint type that does not fit the robot, IRL204 for an
-    unknown type, IRL216 for a system variable declared, IRL226 for a record of ambiguous fields, IRL508,
-    IRL507 for arrays, IRL590 for a part that is not executed yet, and what initial values may raise.
+    Raises InterpreterError: IRL202 for a predefined type defined again, IRL221, IRL222 for a joint
+    type that does not fit the robot, IRL204 for an unknown type, IRL216 for a system variable
+    declared, IRL226 for a record of ambiguous fields, IRL508, IRL507 for arrays, IRL590 for a part
+    that is not executed yet, and what initial values may raise.
     """
     announced = frozenset(symbol.name.key for symbol in declared_symbols(program.declarations))
     scope = Scope(types=predefined_types(len(setting.joint_names)), announced=announced)
@@ -58,15 +59,24 @@ def _actual_joints(scope: Scope) -> Variable:
     return Variable("R_JOINT_ACT", type, unset_value(type), constant=True)
 
 
+def _constants_and_types_first(
+    declarations: tuple[tree.Declaration, ...],
+) -> list[tree.Declaration]:
+    """Declarations in text order, but variables last: parts of a program come in any order."""
+    return sorted(declarations, key=lambda part: isinstance(part, tree.VarDeclaration))
+
+
 class _Declarer:
     def __init__(self, source: SourceText, scope: Scope, setting: Setting) -> None:
         self._source = source
         self._scope = scope
         self._setting = setting
         self._evaluator = Evaluator(source, scope)
+        # Programs may define the joint types themselves; the other predefined types mean one thing.
+        self._fixed = frozenset(scope.types) - frozenset(JOINT_RECORDS)
 
     def program(self, program: tree.Program) -> None:
-        for part in program.declarations:
+        for part in _constants_and_types_first(program.declarations):
             if isinstance(part, tree.TypeDefinition):
                 self._define(part)
             elif isinstance(part, tree.VarDeclaration):
@@ -81,12 +91,12 @@ class _Declarer:
         if isinstance(type, Record):
             type = Record(part.name.name, type.fields)
         key = part.name.key
+        if key in self._fixed:
+            raise fail("IRL202", self._source, part.name.span, name=part.name.name)
         if key in JOINT_RECORDS:
             self._check_joint_type(part, type)
-        predefined = joint_type(self._scope.types["main_joint"])
         self._scope.types[key] = type
-        # JOINT holds the program's own MAIN_JOINT, unless the program defines JOINT, too.
-        if key == "main_joint" and self._scope.types["joint"] == predefined:
+        if key == "main_joint":
             self._scope.types["joint"] = joint_type(type)
             self._scope.variables["r_joint_act"] = _actual_joints(self._scope)
 

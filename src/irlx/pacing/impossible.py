@@ -22,6 +22,7 @@ from irlx.transform.step_bounds import BoundSource
 Array = NDArray[np.float64]
 
 _AT_BOUND = 1e-6
+_NOISE = 1e-9
 _LIMIT_NAMES = {
     BoundSource.POSITION: "position",
     BoundSource.SPEED: "speed",
@@ -73,13 +74,21 @@ def _missing(twist: Array, goal: Nearest | None) -> str:
     if goal is not None and (goal.distance > _AT_BOUND or goal.angle > _AT_BOUND):
         return (
             "the target itself is out of reach: the nearest posture found within the limits leaves "
-            f"{goal.distance * 1000.0:.6g} mm and {np.degrees(goal.angle):.4g} deg"
+            f"{_millimetres(goal.distance)} and {_degrees(goal.angle)}"
         )
     distance, angle = (float(np.linalg.norm(part)) for part in (twist[:3], twist[3:]))
     return (
-        f"at this tick {distance * 1000.0:.3g} mm and {np.degrees(angle):.3g} deg are missing; "
+        f"at this tick {_millimetres(distance)} and {_degrees(angle)} are missing; "
         "the target itself can be reached in some posture"
     )
+
+
+def _millimetres(distance: float) -> str:
+    return f"{distance * 1000.0:.6g} mm" if distance > _NOISE else "0 mm"
+
+
+def _degrees(angle: float) -> str:
+    return f"{np.degrees(angle):.4g} deg" if angle > _NOISE else "0 deg"
 
 
 def _held_joints(halt: Halt, around: Surroundings) -> list[str]:

@@ -50,6 +50,9 @@ Array = NDArray[np.float64]
 POSTURE_REACHED = 1e-6
 """Difference (rad or m) of a joint at the end of a line to a posture that still counts as reached."""
 
+FARTHEST_TARGET = 1e9
+"""Coordinate (m) beyond which a target is out of reach of any robot, and of squares in float64."""
+
 SAME_VALUE = 1e-12
 """Joint values closer than this (rad or m) are the same target."""
 
@@ -260,6 +263,9 @@ class Pacer:
         if block.target.orientation is not None:
             rotation = np.asarray(Rotation.from_quat(block.target.orientation).as_matrix())
         position = np.array(block.target.position)
+        farthest = float(np.max(np.abs(position)))
+        if farthest > FARTHEST_TARGET:
+            raise PacingError(report("IRL522", place, distance=f"{farthest * 1000.0:.6g}", angle="0"))
         free = self.options.free_joints(self.q.size)
         drawn_to = self.options.cyclic_posture if self.options.cyclic_posture is not None else self.q
         start = np.where(free, drawn_to, self.q)

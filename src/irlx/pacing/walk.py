@@ -66,8 +66,10 @@ def walk(
         if not solution.solved:
             halt = Halt(demand, bounds, solution)
             break
-        speed = (solution.q - q) / limiter.dt
-        q = solution.q
+        # q + (limit - q) may lie one bit beyond the limit.
+        reached = limiter.limits.into_positions(solution.q)
+        speed = (reached - q) / limiter.dt
+        q = reached
         rows.append(q)
         flags.append(active_flags(solution.active, bounds))
         done.append(demand)

@@ -35,6 +35,10 @@ class JointLimits:
         """Same limits with the pair of `kind` ('position', 'speed', 'acceleration') replaced."""
         return replace(self, **{f"{kind}_lower": lower, f"{kind}_upper": upper})
 
+    def into_positions(self, q: Array) -> Array:
+        """Joint values (..., n) moved onto the position limit they pass; for what rounding may have left."""
+        return np.clip(q, self.position_lower, self.position_upper)
+
     def pair(self, kind: str) -> tuple[Array, Array]:
         """Lower and upper bounds of `kind`: 'position', 'speed' or 'acceleration'."""
         return getattr(self, f"{kind}_lower"), getattr(self, f"{kind}_upper")

@@ -80,7 +80,7 @@ def nearest_posture(
         solution = solver.solve(problem)
         away = float(weights @ (solution.q - q) ** 2)
         if solution.solved and away < least * (1.0 - _ALIKE):
-            best, least = solution.q, away
+            best, least = limits.into_positions(solution.q), away
     return PostureSearch(best, closest(approaches, kinematics.description.reach))
 
 

@@ -24,7 +24,7 @@ CELL = (
     error("IRL612", "the robot model {model} cannot be used: {cause}{near}"),
     error(
         "IRL613",
-        "{found} joints move the tool frame {tip} ({names}); a pose needs at least six",
+        "the joints that move the tool frame {tip} are {names}: {found}, but a pose needs at least six",
         "choose another tip, or unlock joints; robots with fewer axes are for a later version",
     ),
     error(

@@ -43,7 +43,7 @@ PACING = (
     ),
     error(
         "IRL423",
-        "PTP needs a speed limit of every joint that moves; {joint} has none",
+        "PTP needs the speed limit of a joint that moves; {joint} has none",
         "give robot.limits.speed in the cell file, or JOINTSPEEDLIMIT, or TIME",
     ),
     error(
