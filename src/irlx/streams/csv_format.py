@@ -56,8 +56,11 @@ def _head(header: StreamHeader) -> bytes:
 
 
 def _column_line(header: StreamHeader) -> bytes:
-    """Names of the columns; line breaks in joint names become blanks, their comment has them right."""
-    names = [" ".join(name.splitlines()) for name in header.joint_names]
+    """Names of the columns; line breaks and other control characters in joint names become blanks.
+
+    The comment lines have the names as they are.
+    """
+    names = ["".join(c if c.isprintable() else " " for c in name) for name in header.joint_names]
     joints = [f"{prefix}_{name}" for prefix in ("q", "qd", "qdd") for name in names]
     line = io.StringIO()
     columns = ["tick", "t", "block", *joints, *(f"tool_{part}" for part in _TOOL)]
