@@ -98,8 +98,8 @@ class Execution:
     def __iter__(self) -> Iterator[Executed]:
         """Execute the program block by block. Raises IrlxError where it cannot go on."""
         for block in self._blocks(self._pacer.answer):
-            tick = self._pacer.tick
-            yield Executed(block, tick, self._pacer.execute(block))
+            tick, settled = self._pacer.tick, self._pacer.settled(block)
+            yield Executed(settled, tick, self._pacer.execute(settled))
 
     def blocks(self) -> Iterator[Block]:
         """Blocks of the program; nothing moves until it asks for the posture that its moves lead to."""
@@ -107,7 +107,7 @@ class Execution:
 
         def answer(question: Question) -> tuple[float, ...]:
             for block in waiting:
-                self._pacer.execute(block)
+                self._pacer.execute(self._pacer.settled(block))
             waiting.clear()
             return self._pacer.answer(question)
 
@@ -128,6 +128,11 @@ class Execution:
             reply = answer(item) if isinstance(item, Question) else None
             if isinstance(item, Block):
                 yield item
+
+    def recording(self) -> Recording:
+        """A recording that begins at the cell's start posture."""
+        start = self.job.cell.start
+        return Recording(header_of(self.job), start, *self.kinematics.tool_pose(start))
 
     @property
     def warnings(self) -> list[Diagnostic]:
@@ -177,9 +182,8 @@ def run(
 
 def execute(job: Job, progress: Progress | None = None) -> Run:
     """Run a prepared job; see `run`."""
-    recording = Recording(header_of(job), job.cell.start)
     execution = Execution(job)
-    recording.start_pose(*execution.kinematics.tool_pose(job.cell.start))
+    recording = execution.recording()
     try:
         for executed in execution:
             recording.add(executed.block, executed.tick, executed.rows)
@@ -189,6 +193,10 @@ def execute(job: Job, progress: Progress | None = None) -> Run:
         known = (*_warnings(job), *execution.warnings)
         partial = recording.finish(False, (*known, *error.diagnostics))
         raise RunError((*error.diagnostics, *known), partial) from error
+    except Exception as error:
+        # A fault of irlx itself must not cost what was executed before it.
+        fault = report("IRL090", cause=f"{type(error).__name__}: {error}")
+        raise RunError((fault,), recording.finish(False, (fault,))) from error
     except KeyboardInterrupt as interrupt:
         raise RunInterrupted(recording.finish(False, (*_warnings(job), *execution.warnings))) from interrupt
     return recording.finish(True, (*_warnings(job), *execution.warnings))
@@ -203,13 +211,15 @@ def stream(
 ) -> Iterator[Sample]:
     """Samples of a run, one after another, motion by motion as they are asked for.
 
-    The same samples as `run` gives. Iteration may stop at any sample. Raises what `run` raises,
-    IrlxError in place of RunError.
+    The same samples as `run` gives. Iteration may stop at any sample. What cannot be prepared raises
+    here, what goes wrong in motion at the sample it keeps from coming, as IrlxError.
     """
-    job = prepare(program, cell, tick_ms)
-    recording = Recording(header_of(job), job.cell.start)
+    return _samples(prepare(program, cell, tick_ms))
+
+
+def _samples(job: Job) -> Iterator[Sample]:
     execution = Execution(job)
-    recording.start_pose(*execution.kinematics.tool_pose(job.cell.start))
+    recording = execution.recording()
     yield from recording.take_samples()
     for executed in execution:
         recording.add(executed.block, executed.tick, executed.rows)

@@ -7,7 +7,7 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
-from irlx.cell.find import find_cell
+from irlx.cell.find import find_cell, is_file
 from irlx.cell.frame_names import frame_names
 from irlx.diagnostics import Diagnostic, IrlxError, Place, SourceText, report
 from irlx.diagnostics.near_files import near_files
@@ -92,7 +92,7 @@ def _analysis(path: Path, content: bytes, cell: PathLike | None) -> Analysis:
     def cell_names(root: tree.Program) -> tuple[str, ...]:
         if cell is not None:
             return frame_names(Path(cell))
-        found = (candidate for candidate in _candidates(path, _specification(root)) if candidate.is_file())
+        found = (candidate for candidate in _candidates(path, _specification(root)) if is_file(candidate))
         return next((frame_names(candidate) for candidate in found), ())
 
     try:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import os
+from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 from irlx.cell.load import load_cell
 from irlx.cell.packaged import packaged_names
 from irlx.cell.schema import RobotSection
+from irlx.diagnostics import IrlxError
 from irlx.report.run import Run
 from irlx.robot.description import RobotDescription
 from irlx.streams.formats import read_stream
@@ -27,7 +30,7 @@ def verify(
     The robot is that of `cell`; without one it is looked up by what the stream says of itself: the
     cell file of that name beside the stream or in the working folder, then the packaged robot. With
     `program` the stream must come from that very text. Raises StreamError for a file that is no
-    stream, CellError for a cell that cannot be used.
+    stream, CellError for a cell that cannot be used, ProgramError for a program that cannot.
     """
     joint_stream = stream.stream if isinstance(stream, Run) else read_stream(stream)
     beside = Path.cwd() if isinstance(stream, Run) else Path(stream).parent
@@ -43,14 +46,21 @@ def robot_for(stream: JointStream, beside: Path, cell: PathLike | None = None) -
         return load_cell(Path(cell)).robot
     header = stream.header
     candidates = [folder / header.cell_name for folder in (beside, Path.cwd()) if header.cell_name]
-    for path in candidates:
-        if path.is_file():
-            return load_cell(path).robot
-    if header.robot_model not in packaged_names():
-        return None
-    from irlx.cell.model import load_robot
+    for robot in _guesses(candidates, header.robot_model, header.tip, beside):
+        # A file of that name may be anybody's: only the very robot that the stream names will do.
+        if robot.fingerprint == header.robot_fingerprint and robot.joint_names == header.joint_names:
+            return robot
+    return None
 
-    return load_robot(RobotSection(model=header.robot_model, tip=header.tip), header.robot_model, beside)
+
+def _guesses(candidates: list[Path], model: str, tip: str, beside: Path) -> Iterator[RobotDescription]:
+    for path in candidates:
+        with suppress(IrlxError):
+            yield load_cell(path).robot
+    if model in packaged_names():
+        from irlx.cell.model import load_robot
+
+        yield load_robot(RobotSection(model=model, tip=tip), model, beside)
 
 
 def _program_check(stream: JointStream, path: Path, cell: PathLike | None) -> Check:

@@ -54,8 +54,7 @@ def motion(number: int, first_tick: int, q: np.ndarray, angles: np.ndarray) -> M
 
 def recorded() -> tuple[Recording, list[MotionRows]]:
     """A recording of two motions that turn the tool all the way round, and more."""
-    recording = Recording(header(), START)
-    recording.start_pose(np.eye(3), np.array([0.1, 0.2, 0.0]))
+    recording = Recording(header(), START, np.eye(3), np.array([0.1, 0.2, 0.0]))
     first = motion(1, 1, START + np.linspace(0.02, 0.2, 10)[:, None], np.linspace(0.5, 5.0, 10))
     second = motion(2, 12, first.q[-1] - np.linspace(0.05, 0.2, 4)[:, None], np.linspace(5.5, 9.0, 4))
     return recording, [first, second]

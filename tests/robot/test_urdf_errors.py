@@ -56,7 +56,7 @@ BROKEN = {
     ),
     "mimic": (
         robot(joint(inside='<mimic joint="k"/>')),
-        "joint 'j' mimics another one; lock it or leave it out",
+        "joint 'j' moves the tool and mimics another one; lock it",
     ),
     "no child": (
         "<robot name='r'><link name='a'/><joint name='j' type='fixed'><parent link='a'/></joint></robot>",

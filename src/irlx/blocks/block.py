@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Origin:
-    """Where in a program a block comes from: file name, offsets ``[start, end)``, line from 1."""
+    """Where in a program a block comes from: file (no folder), offsets ``[start, end)``, line from 1."""
 
     file: str
     start: int

@@ -30,5 +30,6 @@ def read_bytes(path: Path) -> bytes:
         raise CellError(report("IRL001", path=path, near=near_files(path))) from cause
     except IsADirectoryError as cause:
         raise CellError(report("IRL007", path=path)) from cause
-    except OSError as cause:
-        raise CellError(report("IRL002", Place(str(path)), path=path, cause=cause.strerror)) from cause
+    except (OSError, ValueError) as cause:
+        words = cause.strerror if isinstance(cause, OSError) else str(cause)
+        raise CellError(report("IRL002", Place(str(path)), path=path, cause=words)) from cause

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from irlx.cell.errors import CellError
+from irlx.cell.find import is_file
 from irlx.cell.packaged import packaged_cell, packaged_names, packaged_urdf
 from irlx.cell.read import read_cell_file
 from irlx.cell.schema import RobotSection, Section
@@ -100,7 +101,7 @@ def _unusable(cause: RobotModelError, model: str, place: Place) -> CellError:
 def _urdf_file(model: str, folder: Path, place: Place) -> str:
     path = folder / model
     looks_like_a_path = "/" in model or "." in model
-    if not looks_like_a_path or not path.is_file():
+    if not looks_like_a_path or not is_file(path):
         near = near_matches(model, packaged_names())
         tried = "" if not looks_like_a_path else f" (looked for {path})"
         known = ", ".join(packaged_names())

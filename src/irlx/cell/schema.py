@@ -32,7 +32,7 @@ class Section(BaseModel):
 
 
 class LimitsSection(Section):
-    """Limits that replace those of the model: one entry a joint, or one entry for all joints.
+    """Limits that replace those of the model: one entry a joint, or false for none at all.
 
     A number is +- that number, a pair is [lower, upper], false is no limit; deg | mm, s.
     """

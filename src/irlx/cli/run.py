@@ -73,7 +73,7 @@ def command(options: argparse.Namespace) -> int:
         print_diagnostics(run.diagnostics)
     for path in outputs:
         run.save(path)
-    reports = {} if options.no_verify else {str(path): _verified(path, options) for path in outputs}
+    reports = {} if options.no_verify else {str(path): _verified(path, job) for path in outputs}
     _print_summary(run, outputs, reports, options)
     return 0 if all(report.passed for report in reports.values()) else 1
 
@@ -136,12 +136,19 @@ def _progress(options: argparse.Namespace) -> AbstractContextManager[Any]:
 
 def _keep_partial(run: Run, outputs: list[Path], options: argparse.Namespace) -> None:
     """Write what was executed under names of its own: the asked names only ever hold complete streams."""
+    from irlx.cli.output import encodable
+
+    for path in outputs:
+        if path.exists():
+            print(
+                encodable(f"irlx: {path} is left as it was, from an earlier run", sys.stderr), file=sys.stderr
+            )
     if run.t.size > 1:
         for path in outputs:
             partial = path.with_name(f"{path.stem}.partial{path.suffix}")
             run.save(partial)
             words = f"the stream up to the last stop ({run.t[-1]:.6g} s), marked incomplete: {partial}"
-            print(f"irlx: {words}", file=sys.stderr)
+            print(encodable(f"irlx: {words}", sys.stderr), file=sys.stderr)
     if options.json:
         plain = {"summary": run.summary.to_plain(), "diagnostics": _plain_diagnostics(run.diagnostics)}
         print(json.dumps(plain, indent=2))
@@ -154,15 +161,16 @@ def _plain_diagnostics(diagnostics: Iterable[Diagnostic]) -> list[dict[str, obje
     ]
 
 
-def _verified(path: Path, options: argparse.Namespace) -> Any:
+def _verified(path: Path, job: Job) -> Any:
     from irlx.verification import verify
 
-    return verify(path, options.program, options.cell or None)
+    return verify(path, job.program.path, job.cell.file)
 
 
 def _print_summary(
     run: Run, outputs: list[Path], reports: dict[str, Any], options: argparse.Namespace
 ) -> None:
+    from irlx.cli.output import encodable
     from irlx.report.terminal import summary_text, verification_line
 
     if options.json:
@@ -175,9 +183,10 @@ def _print_summary(
         print(json.dumps(plain, indent=2))
         return
     if not options.quiet:
-        print(summary_text(run.summary, run.stream.header.joint_units, run.joint_names))
+        words = summary_text(run.summary, run.stream.header.joint_units, run.joint_names)
+        print(encodable(words, sys.stdout))
         for path in outputs:
-            print(f"{'written':<12}{path}")
+            print(encodable(f"{'written':<12}{path}", sys.stdout))
     for name, report in reports.items():
         if not options.quiet or not report.passed:
-            print(verification_line(name, report))
+            print(encodable(verification_line(name, report), sys.stdout))

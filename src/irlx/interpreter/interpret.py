@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from math import radians
+from pathlib import PurePath
 
 from irlx.blocks import (
     AskPosture,
@@ -87,7 +88,7 @@ class _Interpreter:
 
     def _origin(self, node: tree.Node) -> Origin:
         line, _ = self._source.line_and_column(node.span.start)
-        return Origin(self._source.name, node.span.start, node.span.end, line)
+        return Origin(PurePath(self._source.name).name, node.span.start, node.span.end, line)
 
     def _set_actual(self, joints: tuple[float, ...]) -> None:
         """Store the posture (rad, m) in R_JOINT_ACT (deg, mm)."""

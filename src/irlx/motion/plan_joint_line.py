@@ -42,6 +42,9 @@ class PlannedJointLine:
         share[-1:] = 1.0
         rows = self.start + share[:, None] * (self.end - self.start)
         rows[-1:] = self.end
+        still = self.start == self.end
+        # -0.0 + 0.0 is 0.0: a joint that does not move keeps its very bits.
+        rows[:, still] = self.start[still]
         return np.asarray(rows)
 
 
@@ -68,7 +71,10 @@ def plan_joint_line(
     moving = way != 0.0
     _check_movable(moving & ((speed == 0.0) | (acc == 0.0)), joint_names, place)
     rate = float(np.min(speed[moving] / np.abs(way[moving])))
-    if not np.isfinite(rate):
+    bound = float(np.min(acc[moving] / np.abs(way[moving])))
+    if not np.isfinite(rate) and np.isfinite(bound):
+        trapezoid = Trapezoid.fastest(1.0, rate, bound)
+    elif not np.isfinite(rate):
         if law.duration is None:
             joint = joint_names[int(np.flatnonzero(moving)[0])]
             raise MotionError(report("IRL423", place, joint=joint))

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from irlx.blocks import LimitKind, Origin
 from irlx.diagnostics import Diagnostic, Place, report
 from irlx.motion.line import Line
 from irlx.pacing.row_check import BrokenBound
@@ -33,12 +35,13 @@ _LIMIT_NAMES = {
 
 @dataclass(frozen=True)
 class Surroundings:
-    """What the diagnosis needs to know of the move: robot, limits in force, free joints, the tick."""
+    """What the diagnosis needs to know of the move: robot, limits in force, free joints, and the clause or
+    switch of the program that narrowed a kind of limit."""
 
     kinematics: Kinematics
     limits: JointLimits
     free: NDArray[np.bool_]
-    dt: float
+    asked_by: Mapping[LimitKind, Origin] = field(default_factory=dict)
 
 
 def joint_value(robot: RobotDescription, joint: int, value: float, per: str = "") -> str:
@@ -116,9 +119,10 @@ def _limit(joint: int, source: BoundSource, upper: bool, around: Surroundings) -
     kind = {BoundSource.SPEED: "speed", BoundSource.ACCELERATION: "acceleration"}.get(source, "position")
     per = {"speed": "/s", "acceleration": "/s2"}.get(kind, "")
     value = around.limits.pair(kind)[1 if upper else 0][joint]
-    return (
-        f"{side} {_LIMIT_NAMES[source]} limit {joint_value(around.kinematics.description, joint, value, per)}"
-    )
+    asked = around.asked_by.get(LimitKind(kind.upper()))
+    origin = f" (narrowed in line {asked.line})" if asked is not None else ""
+    words = joint_value(around.kinematics.description, joint, value, per)
+    return f"{side} {_LIMIT_NAMES[source]} limit {words}{origin}"
 
 
 def _nearest_to_limit(q: Array, around: Surroundings) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +32,7 @@ from irlx.pacing.impossible import Surroundings, explain_broken_row, explain_hal
 from irlx.pacing.options import LimitsInForce, Options, limits_in_force
 from irlx.pacing.row_check import broken_bound
 from irlx.pacing.rows import MotionRows
+from irlx.pacing.snap import SAME_VALUE, snapped
 from irlx.pacing.switches import check_freeze, check_inside, check_joint_target, check_limit
 from irlx.pacing.walk import Walk, walk
 from irlx.robot.kinematics import Kinematics
@@ -52,9 +53,6 @@ POSTURE_REACHED = 1e-6
 
 FARTHEST_TARGET = 1e9
 """Coordinate (m) beyond which a target is out of reach of any robot, and of squares in float64."""
-
-SAME_VALUE = 1e-12
-"""Joint values closer than this (rad or m) are the same target."""
 
 
 @dataclass(frozen=True)
@@ -87,6 +85,10 @@ class Pacer:
         """Answer to a question of the interpreter, all blocks before it executed."""
         return tuple(float(value) for value in self.q)
 
+    def settled(self, block: Block) -> Block:
+        """The block as it is executed here: bounds that mean the present posture lie exactly on it."""
+        return snapped(block, self.q)
+
     def execute(self, block: Block) -> MotionRows | None:
         """Execute one block; returns the rows of a move (None for a switch or a move of no length).
 
@@ -113,10 +115,11 @@ class Pacer:
         rows = (
             self._joint_line(block, in_force) if block.kind is MoveKind.PTP else self._line(block, in_force)
         )
-        if rows is not None:
-            self.q = rows.q[-1]
-            self.tick += len(rows)
-        return rows
+        if rows is None:
+            return None
+        self.q = rows.q[-1]
+        self.tick += len(rows)
+        return replace(rows, limits=in_force.limits)
 
     # ---- LIN
 
@@ -129,7 +132,7 @@ class Pacer:
             self._warn_of_posture_left(self.q, posture, place)
             return None
         free = self.options.free_joints(self.q.size)
-        around = Surroundings(self._setup.kinematics, in_force.limits, free, self._setup.dt)
+        around = Surroundings(self._setup.kinematics, in_force.limits, free, in_force.asked_by)
         clock = programmed_clock(plan.law, plan.ticks, self._setup.dt)
         walked = walk(
             self._solver,

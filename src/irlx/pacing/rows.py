@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.blocks import MoveBlock
+from irlx.robot.limits import JointLimits
 
 Array = NDArray[np.float64]
 
@@ -19,7 +20,8 @@ class MotionRows:
     `q` (N, n) rad or m; `tool_position` (N, 3) m and `tool_rotation` (N, 3, 3) of the tool in the
     world; `path_position_error` (N,) m and `path_orientation_error` (N,) rad against the demanded
     pose; `active` (N, n): 0, or the sign of the side times (1 + BoundSource) of the bound that holds
-    a joint back; `s` (N,) path parameter of `length`; `iterations` Newton steps in all.
+    a joint back; `s` (N,) path parameter of `length`; `iterations` Newton steps in all;
+    `limits` in force, None for the robot's own.
     """
 
     block: MoveBlock
@@ -33,6 +35,7 @@ class MotionRows:
     s: Array
     length: float
     iterations: int
+    limits: JointLimits | None = None
 
     def __len__(self) -> int:
         return int(self.q.shape[0])

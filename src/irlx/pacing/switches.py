@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.blocks import FreezeBlock, JointRange, LimitClause, LimitKind, LimitSwitchBlock, Origin
+from irlx.blocks import FreezeBlock, JointRange, LimitClause, LimitKind, LimitSwitchBlock
 from irlx.diagnostics import Diagnostic, Place, report
 from irlx.pacing.errors import PacingError
 from irlx.pacing.impossible import joint_value
@@ -15,7 +13,6 @@ from irlx.robot.description import RobotDescription
 from irlx.robot.limits import JointLimits
 
 Array = NDArray[np.float64]
-Locate = Callable[[Origin], Place]
 
 TASK_ROWS = 6
 """Coordinates of the tool pose that every move asks for."""

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +15,8 @@ from irlx.diagnostics import Diagnostic
 from irlx.pacing.rows import MotionRows
 from irlx.report.events import limit_events
 from irlx.report.run import Run
-from irlx.report.summary import Summary, closure, limit_uses
+from irlx.report.summary import LimitUse, Summary, closure, limit_uses
+from irlx.robot.limits import JointLimits
 from irlx.robot.promises import PATH_POSITION
 from irlx.streams.joint_stream import BlockRecord, JointStream, StreamHeader
 from irlx.streams.sample import Sample
@@ -21,88 +24,132 @@ from irlx.streams.sample import Sample
 Array = NDArray[np.float64]
 
 
+class _Segment(NamedTuple):
+    """Rows of one block, or of the start; added to a recording as a whole, or not at all."""
+
+    record: BlockRecord | None
+    q: Array
+    block: NDArray[np.int64]
+    tool: Array
+    active: NDArray[np.int8]
+    limits: JointLimits
+    path_error: tuple[float, float] = (0.0, 0.0)
+    iterations: int = 0
+
+
 class Recording:
     """Rows of a run from tick 0, the start posture at rest."""
 
-    def __init__(self, header: StreamHeader, start: Array) -> None:
+    def __init__(self, header: StreamHeader, start: Array, rotation: Array, position: Array) -> None:
+        """Begin at posture `start` (n,), the tool at `rotation` (3, 3), `position` (3,) m, in the world."""
         self._header = header
-        self._q = [start[None, :]]
-        self._block = [np.zeros(1, dtype=np.int64)]
-        self._tool: list[Array] = []
-        self._active = [np.zeros((1, start.size), dtype=np.int8)]
-        self._records: list[BlockRecord] = []
-        self._path_error = (0.0, 0.0)
-        self._iterations = 0
-        self._rows = 1
+        pose = _pose_rows(position[None, :], rotation[None, :, :], None)
+        still = np.zeros((1, start.size), dtype=np.int8)
+        first = _Segment(None, start[None, :], np.zeros(1, dtype=np.int64), pose, still, header.limits)
+        self._segments = [first]
         self._sampled = 0
+        self._dropped = 0
 
     @property
     def duration(self) -> float:
         """Time of the last row, s."""
         return (self._rows - 1) * self._header.dt
 
-    def start_pose(self, rotation: Array, position: Array) -> None:
-        """Tool pose of the start posture: rotation (3, 3), position (3,) m, in the world."""
-        self._tool.append(_pose_rows(position[None, :], rotation[None, :, :], None))
+    @property
+    def _rows(self) -> int:
+        return self._dropped + sum(len(segment.q) for segment in self._segments)
 
     def add(self, block: Block, tick: int, rows: MotionRows | None) -> None:
         """Add a block that began at `tick`, and the rows it became."""
-        self._records.append(BlockRecord(tick, block))
+        last = self._segments[-1]
+        record = BlockRecord(tick, block)
         if rows is None:
+            nothing = last.q[:0], last.block[:0], last.tool[:0], last.active[:0]
+            self._segments.append(_Segment(record, *nothing, self._header.limits))
             return
-        self._q.append(rows.q)
-        self._block.append(np.full(len(rows), block.id, dtype=np.int64))
-        self._tool.append(_pose_rows(rows.tool_position, rows.tool_rotation, self._tool[-1][-1, 3:]))
-        self._active.append(rows.active)
-        worst = float(rows.path_position_error.max()), float(rows.path_orientation_error.max())
-        self._path_error = (max(self._path_error[0], worst[0]), max(self._path_error[1], worst[1]))
-        self._iterations += rows.iterations
-        self._rows += len(rows)
+        before = next(segment.tool[-1, 3:] for segment in reversed(self._segments) if len(segment.tool))
+        self._segments.append(
+            _Segment(
+                record,
+                rows.q,
+                np.full(len(rows), block.id, dtype=np.int64),
+                _pose_rows(rows.tool_position, rows.tool_rotation, before),
+                rows.active,
+                rows.limits or self._header.limits,
+                (float(rows.path_position_error.max()), float(rows.path_orientation_error.max())),
+                rows.iterations,
+            )
+        )
 
     def take_samples(self) -> Iterator[Sample]:
         """Samples of the rows added since the last call; only the last rows stay in memory."""
-        q, block, tool = np.vstack(self._q), np.concatenate(self._block), np.vstack(self._tool)
-        qd = np.vstack([np.zeros_like(q[:1]), np.diff(q, axis=0)]) / self._header.dt
-        qdd = np.vstack([np.zeros_like(q[:1]), np.diff(qd, axis=0)]) / self._header.dt
-        first_tick = self._rows - len(q)
+        q, block, tool = self._columns()
+        qd, qdd = _rates(q, self._header.dt)
+        first_tick = self._dropped
         for row in range(self._sampled - first_tick, len(q)):
             tick = first_tick + row
             t = tick * self._header.tick_ns / 1e9
             yield Sample(tick, t, q[row], qd[row], qdd[row], tool[row], int(block[row]))
-        self._sampled = self._rows
+        self._sampled = first_tick + len(q)
         # Every motion ends with a hold row: two rows carry rest over into the next differences.
-        self._q, self._block, self._tool = [q[-2:]], [block[-2:]], [tool[-2:]]
-        self._records.clear()
+        keep = slice(max(len(q) - 2, 0), None)
+        self._dropped += keep.start
+        last = self._segments[-1]
+        still = np.zeros((len(q[keep]), q.shape[1]), dtype=np.int8)
+        self._segments = [_Segment(None, q[keep], block[keep], tool[keep], still, last.limits)]
 
     def finish(self, complete: bool, diagnostics: tuple[Diagnostic, ...]) -> Run:
         """The run as it stands."""
-        q = np.vstack(self._q)
-        stream = JointStream(
-            self._header,
-            tuple(self._records),
-            np.arange(self._rows, dtype=np.int64),
-            q,
-            np.concatenate(self._block),
-            np.vstack(self._tool),
-            complete,
-        )
-        events = limit_events(np.vstack(self._active), self._header.joint_names, self._header.dt)
+        q, block, tool = self._columns()
+        records = tuple(segment.record for segment in self._segments if segment.record is not None)
+        ticks = np.arange(len(q), dtype=np.int64)
+        stream = JointStream(self._header, records, ticks, q, block, tool, complete)
         names = self._header.joint_names
-        moves = sum(isinstance(record.block, MoveBlock) for record in self._records)
+        active = np.concatenate([segment.active for segment in self._segments])
+        events = limit_events(active, names, self._header.dt)
+        iterations = sum(segment.iterations for segment in self._segments)
         summary = Summary(
             program=self._header.program_name,
             complete=complete,
             duration=self.duration,
-            samples=self._rows,
-            moves=moves,
-            path_position_error=self._path_error[0],
-            path_orientation_error=self._path_error[1],
-            limit_use=limit_uses(q, stream.qd, stream.qdd, self._header.limits, names),
+            samples=len(q),
+            moves=sum(isinstance(record.block, MoveBlock) for record in records),
+            path_position_error=max(segment.path_error[0] for segment in self._segments),
+            path_orientation_error=max(segment.path_error[1] for segment in self._segments),
+            limit_use=self._limit_use(stream),
             active=events,
-            closure=closure(q, stream.tool, names, PATH_POSITION),
-            iterations_per_tick=self._iterations / max(self._rows - 1, 1),
+            closure=closure(q, tool, names, PATH_POSITION),
+            iterations_per_tick=iterations / max(len(q) - 1, 1),
         )
         return Run(stream, events, summary, diagnostics)
+
+    def _columns(self) -> tuple[Array, NDArray[np.int64], Array]:
+        """Rows of q (N, n), block (N,) and tool (N, 7)."""
+        q = np.concatenate([segment.q for segment in self._segments])
+        block = np.concatenate([segment.block for segment in self._segments])
+        return q, block, np.concatenate([segment.tool for segment in self._segments])
+
+    def _limit_use(self, stream: JointStream) -> tuple[LimitUse, ...]:
+        """Largest use of each kind of limit, each row judged by the limits in force at it."""
+        worst: dict[str, LimitUse] = {}
+        first = 0
+        for segment in self._segments:
+            rows = slice(first, first + len(segment.q))
+            first = rows.stop
+            if len(segment.q) == 0:
+                continue
+            for use in limit_uses(
+                segment.q, stream.qd[rows], stream.qdd[rows], segment.limits, self._header.joint_names
+            ):
+                if use.kind not in worst or use.share > worst[use.kind].share:
+                    worst[use.kind] = replace(use, tick=use.tick + rows.start)
+        return tuple(worst[kind] for kind in ("position", "speed", "acceleration") if kind in worst)
+
+
+def _rates(q: Array, dt: float) -> tuple[Array, Array]:
+    """Backward differences of rows (N, n) and of these, per s and s2, from rest before the first."""
+    qd = np.vstack([np.zeros_like(q[:1]), np.diff(q, axis=0)]) / dt
+    return qd, np.vstack([np.zeros_like(q[:1]), np.diff(qd, axis=0)]) / dt
 
 
 def _pose_rows(position: Array, rotation: Array, before: Array | None) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -81,7 +82,9 @@ class Kinematics:
         """Add a link, welded to Pinocchio joint `parent` at `in_parent`, and all that hangs on it."""
         inertial = self.description.inertials.get(link)
         if inertial is not None:
-            self.model.appendBodyToJoint(parent, _inertia(inertial), in_parent)
+            # Many published URDFs have inertias that no body has; nothing here moves by them.
+            with suppress(RuntimeError, ValueError):
+                self.model.appendBodyToJoint(parent, _inertia(inertial), in_parent)
         if link == self.description.tip:
             frame = pin.Frame(link, parent, 0, in_parent, pin.FrameType.OP_FRAME)
             self._tip_frame = self.model.addFrame(frame)

@@ -8,6 +8,9 @@ from math import inf, isfinite, sqrt
 
 from irlx.robot.description import Inertial, Joint, JointKind, RobotDescription, Vector3
 
+MOST_LINKS = 500
+"""Links of a robot; longer chains are a mistake, and would exhaust the stack."""
+
 
 class RobotModelError(ValueError):
     """A robot model that cannot be used; `subject` names the element, `known` the valid names if any."""
@@ -41,7 +44,9 @@ def read_urdf(
         if name not in {joint.name for joint in joints}:
             known = tuple(joint.name for joint in joints)
             raise RobotModelError(f"no joint is called '{name}'", name, known)
-    return RobotDescription(root_element.get("name", "robot"), root, tip, joints, inertials, locked)
+    robot = RobotDescription(root_element.get("name", "robot"), root, tip, joints, inertials, locked)
+    _check_axes(robot, root_element)
+    return robot
 
 
 def _robot_element(text: str) -> ET.Element:
@@ -54,10 +59,20 @@ def _robot_element(text: str) -> ET.Element:
     return element
 
 
+def _check_axes(robot: RobotDescription, root_element: ET.Element) -> None:
+    """Joints that follow others are fine where they are held or lie off the chain, not among the axes."""
+    mimicking = {e.get("name", "") for e in root_element.findall("joint") if e.find("mimic") is not None}
+    for name in robot.joint_names:
+        if name in mimicking:
+            raise RobotModelError(f"joint '{name}' moves the tool and mimics another one; lock it", name)
+
+
 def _check_tree(links: list[str], joints: tuple[Joint, ...]) -> str:
     """Name of the root link; raises RobotModelError where links and joints form no tree."""
     if not links:
         raise RobotModelError("it has no <link>")
+    if len(links) > MOST_LINKS:
+        raise RobotModelError(f"it has {len(links)} links; at most {MOST_LINKS} are read")
     for what, names in (("link", links), ("joint", [joint.name for joint in joints])):
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:
@@ -108,8 +123,6 @@ def _joint(element: ET.Element) -> Joint:
         known = tuple(kind.value for kind in JointKind)
         message = f"joint '{name}' is of type '{kind_text}'; irlx moves {', '.join(known)}"
         raise RobotModelError(message, name, known) from None
-    if element.find("mimic") is not None:
-        raise RobotModelError(f"joint '{name}' mimics another one; lock it or leave it out", name)
     parent, child = (_link_of(element, tag, name) for tag in ("parent", "child"))
     xyz, rpy = _origin(element, f"joint '{name}'")
     lower, upper, speed = _joint_limits(element, name, kind)

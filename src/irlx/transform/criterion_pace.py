@@ -18,6 +18,7 @@ Array = NDArray[np.float64]
 _PATH_NEARLY_MET = 1e-3
 _LEAST_SHARE = 0.05
 _LARGEST_SHARE = 2.0
+_NO_DIFFERENCE = 1e-3
 
 
 class CriterionPace:
@@ -38,10 +39,11 @@ class CriterionPace:
             return d
         share = self._share(problem.hessian, d)
         taken = d
-        if share != 1.0:
+        if abs(share - 1.0) > _NO_DIFFERENCE:
             along_path = path_step(problem)
             taken = along_path + share * (d - along_path)
-            if share > 1.0 and not within(taken, problem.lower, problem.upper):
+            # The shortest way onto the path may lead out of the bounds; the QP's step never does.
+            if not within(taken, problem.lower, problem.upper):
                 taken = d
         self._asked, self._taken = d, taken
         return taken

@@ -24,6 +24,7 @@ RESTARTS = 16
 _SEED = 11
 _ITERATIONS = 200
 _ALIKE = 1e-9
+_WIDE = 100.0
 
 
 @dataclass(frozen=True)
@@ -91,8 +92,9 @@ def closest(approaches: list[Nearest], reach: float) -> Nearest:
 
 def _starts(q: Array, limits: JointLimits, free: NDArray[np.bool_]) -> list[Array]:
     random = np.random.default_rng(_SEED)
-    lower = np.where(np.isfinite(limits.position_lower), limits.position_lower, q - np.pi)
-    upper = np.where(np.isfinite(limits.position_upper), limits.position_upper, q + np.pi)
+    # Limits of many turns stand for none: starts drawn from them would all be one noise.
+    lower = np.where(limits.position_lower > -_WIDE, limits.position_lower, q - np.pi)
+    upper = np.where(limits.position_upper < _WIDE, limits.position_upper, q + np.pi)
     drawn = [np.where(free, random.uniform(lower, upper), q) for _ in range(RESTARTS)]
     return [q, *drawn]
 

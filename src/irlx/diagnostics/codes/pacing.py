@@ -43,7 +43,7 @@ PACING = (
     ),
     error(
         "IRL423",
-        "PTP needs the speed limit of a joint that moves; {joint} has none",
+        "PTP needs a limit to go by; {joint} moves and has no speed limit",
         "give robot.limits.speed in the cell file, or JOINTSPEEDLIMIT, or TIME",
     ),
     error(
