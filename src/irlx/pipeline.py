@@ -11,13 +11,14 @@ from unicodedata import normalize
 from irlx._version import __version__
 from irlx.blocks import Block, Origin, Question
 from irlx.cell.cell import Cell
+from irlx.cell.find import is_file
 from irlx.cell.load import load_cell
 from irlx.diagnostics import Diagnostic, IrlxError, Place, Span, report
 from irlx.interpreter.interpret import interpret
 from irlx.interpreter.setting import Setting
 from irlx.pacing.pacer import Pacer, PacingSetup
 from irlx.pacing.rows import MotionRows
-from irlx.program import Program, cell_path, load
+from irlx.program import Program, ProgramError, cell_path, load
 from irlx.report.recording import Recording
 from irlx.report.run import Run, RunError, RunInterrupted
 from irlx.robot.kinematics import Kinematics
@@ -48,7 +49,7 @@ def prepare(program: Program | PathLike, cell: PathLike | None = None, tick_ms: 
     Raises ProgramError, CellError, or IrlxError with IRL006 for a tick out of range.
     """
     if not isinstance(program, Program):
-        program = load(program, cell)
+        program = _loaded(program, cell)
     loaded = load_cell(cell_path(program, cell))
     if tick_ms is None:
         return Job(program, loaded, loaded.tick_ns)
@@ -56,6 +57,17 @@ def prepare(program: Program | PathLike, cell: PathLike | None = None, tick_ms: 
         cause = f"a tick lasts {LEAST_TICK_MS:g} to {LONGEST_TICK_MS:g} ms"
         raise IrlxError(report("IRL006", value=f"{tick_ms:g}", cause=cause))
     return Job(program, loaded, round(tick_ms * 1e6))
+
+
+def _loaded(path: PathLike, cell: PathLike | None) -> Program:
+    """The program; where names are unknown and its cell is at fault, the cell's faults come first."""
+    try:
+        return load(path, cell)
+    except ProgramError as error:
+        likely = Path(cell) if cell is not None else Path(path).with_suffix(".toml")
+        if any(found.code == "IRL201" for found in error.diagnostics) and is_file(likely):
+            load_cell(likely)
+        raise
 
 
 def setting_of(cell: Cell) -> Setting:

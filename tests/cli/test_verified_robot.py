@@ -67,3 +67,23 @@ def test_a_limit_made_of_the_present_posture_may_be_left(tmp_path) -> None:
         "JOINTLIMIT lo, hi;\nJOINTLIMITEND;\nENDPROGRAM;\n"
     )
     assert irlx.verify(irlx.run(tmp_path / "p.irl")).passed
+
+
+@pytest.mark.req("CELL-01")
+def test_a_broken_cell_is_told_before_the_names_it_would_have_given(tmp_path) -> None:
+    (tmp_path / "p.toml").write_text("[robot\n")
+    (tmp_path / "p.irl").write_text("PROGRAM p;\nBEGIN\n  MOVE LIN table;\nENDPROGRAM;\n")
+    with pytest.raises(irlx.CellError) as caught:
+        irlx.run(tmp_path / "p.irl")
+    assert caught.value.reason.code == "IRL601"
+
+
+@pytest.mark.req("CELL-01")
+def test_frames_that_differ_in_case_alone_are_refused(tmp_path) -> None:
+    frames = "[frames]\ntable = { xyz = [1, 0, 0] }\nTable = { xyz = [2, 0, 0] }\n"
+    (tmp_path / "p.toml").write_text(f'[robot]\nmodel = "koch11"\n{frames}')
+    (tmp_path / "p.irl").write_text("PROGRAM p;\nBEGIN\nENDPROGRAM;\n")
+    with pytest.raises(irlx.CellError) as caught:
+        irlx.run(tmp_path / "p.irl")
+    assert caught.value.reason.code == "IRL603"
+    assert caught.value.reason.place.key == "frames.Table"

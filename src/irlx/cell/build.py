@@ -35,6 +35,7 @@ def build_cell(content: CellFile, robot_section: RobotSection, robot: RobotDescr
     )
     _status_joints(robot_section, robot, file, errors)
     q = np.array([to_si(robot, joint, value) for joint, value in enumerate(start[:count])])
+    errors += _frame_errors(content, file)
     if not errors:
         errors += _start_errors(q, limits, robot, file)
     if errors:
@@ -159,6 +160,21 @@ def _start_errors(q: Array, limits: JointLimits, robot: RobotDescription, file: 
         data: dict[str, Any] = {"joint": robot.axes[joint].name, "found": found, "unit": unit}
         data |= {"lower": lower, "upper": upper}
         errors.append(report("IRL620", Place(file, key=key), **data))
+    return errors
+
+
+def _frame_errors(content: CellFile, file: str) -> list[Diagnostic]:
+    """Frames that differ in case alone: programs do not tell them apart."""
+    errors: list[Diagnostic] = []
+    first: dict[str, str] = {}
+    for name in content.frames:
+        other = first.setdefault(name.casefold(), name)
+        if other != name:
+            key = f"frames.{name}"
+            expected = f"a name that differs from '{other}' in more than case"
+            errors.append(
+                report("IRL603", Place(file, key=key), key=key, expected=expected, found=repr(name))
+            )
     return errors
 
 

@@ -19,7 +19,8 @@ RUN = (
         "IRL520",
         "the tool cannot follow this move beyond {way} of {length} (tick {tick}): {held}; "
         "smallest singular value {sigma}; {missing}",
-        "slow the move down, widen the limit, or start it from another posture",
+        "widen the limit, or start the move from another posture; where a speed or acceleration limit holds "
+        "it and the target can be reached, less SPEED helps",
     ),
     error(
         "IRL521",
