@@ -206,6 +206,8 @@ def execute(job: Job, progress: Progress | None = None) -> Run:
         partial = recording.finish(False, (*known, *error.diagnostics))
         raise RunError((*error.diagnostics, *known), partial) from error
     except Exception as error:
+        if os.environ.get("IRLX_DEBUG"):
+            raise
         # A fault of irlx itself must not cost what was executed before it.
         fault = report("IRL090", cause=f"{type(error).__name__}: {error}")
         raise RunError((fault,), recording.finish(False, (fault,))) from error

@@ -87,3 +87,28 @@ def test_frames_that_differ_in_case_alone_are_refused(tmp_path) -> None:
         irlx.run(tmp_path / "p.irl")
     assert caught.value.reason.code == "IRL603"
     assert caught.value.reason.place.key == "frames.Table"
+
+
+@pytest.mark.req("STR-05")
+def test_a_fault_of_irlx_in_a_run_keeps_what_was_executed(tmp_path, monkeypatch) -> None:
+    from irlx.pacing.pacer import Pacer
+
+    (tmp_path / "p.toml").write_text('[robot]\nmodel = "koch11"\n')
+    moves = "MOVE LIN (11400, 1000, 3500);\nMOVE LIN (11300, 1000, 3500);\n"
+    (tmp_path / "p.irl").write_text(f"PROGRAM p;\nBEGIN\n{moves}ENDPROGRAM;\n")
+    execute = Pacer.execute
+
+    def faulty(self, block):
+        if block.id == 2:
+            raise ArithmeticError("on purpose")
+        return execute(self, block)
+
+    monkeypatch.setattr(Pacer, "execute", faulty)
+    with pytest.raises(irlx.RunError) as caught:
+        irlx.run(tmp_path / "p.irl")
+    assert caught.value.reason.code == "IRL090"
+    assert not caught.value.run.complete
+    assert len(caught.value.run.t) > 1
+    monkeypatch.setenv("IRLX_DEBUG", "1")
+    with pytest.raises(ArithmeticError):
+        irlx.run(tmp_path / "p.irl")

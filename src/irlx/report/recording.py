@@ -47,6 +47,7 @@ class Recording:
         still = np.zeros((1, start.size), dtype=np.int8)
         first = _Segment(None, start[None, :], np.zeros(1, dtype=np.int64), pose, still, header.limits)
         self._segments = [first]
+        self._rows = 1
         self._sampled = 0
         self._dropped = 0
 
@@ -54,10 +55,6 @@ class Recording:
     def duration(self) -> float:
         """Time of the last row, s."""
         return (self._rows - 1) * self._header.dt
-
-    @property
-    def _rows(self) -> int:
-        return self._dropped + sum(len(segment.q) for segment in self._segments)
 
     def add(self, block: Block, tick: int, rows: MotionRows | None) -> None:
         """Add a block that began at `tick`, and the rows it became."""
@@ -80,6 +77,7 @@ class Recording:
                 rows.iterations,
             )
         )
+        self._rows += len(rows)
 
     def take_samples(self) -> Iterator[Sample]:
         """Samples of the rows added since the last call; only the last rows stay in memory."""
