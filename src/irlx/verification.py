@@ -9,7 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from irlx.cell.load import load_cell
-from irlx.cell.packaged import packaged_names
+from irlx.cell.named import robot_names
 from irlx.cell.schema import RobotSection
 from irlx.diagnostics import IrlxError
 from irlx.report.run import Run
@@ -28,7 +28,7 @@ def verify(
     """Check a run, or a stream file, independently of what made it.
 
     The robot is that of `cell`; without one it is looked up by what the stream says of itself: the
-    cell file of that name beside the stream or in the working folder, then the packaged robot. With
+    cell file of that name beside the stream or in the working folder, then the robot of that name. With
     `program` the stream must come from that very text. Raises StreamError for a file that is no
     stream, CellError for a cell that cannot be used, ProgramError for a program that cannot.
     """
@@ -57,9 +57,10 @@ def _guesses(candidates: list[Path], model: str, tip: str, beside: Path) -> Iter
     for path in candidates:
         with suppress(IrlxError):
             yield load_cell(path).robot
-    if model in packaged_names():
+    if model in robot_names():
         from irlx.cell.model import load_robot
 
+        # Not suppressed: that a robot's package is missing is worth more than "not made".
         yield load_robot(RobotSection(model=model, tip=tip), model, beside)
 
 

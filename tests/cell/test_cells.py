@@ -107,6 +107,14 @@ def test_locked_joints_leave_the_robot(cell, chain):
     assert found.weights.tolist() == [6, 5, 4, 3, 2, 1]
 
 
+def test_a_joint_that_mimics_another_may_be_locked(cell, chain):
+    mimicking = chain(7).replace(
+        '</joint><link name="link4"/>', '<mimic joint="j1"/></joint><link name="link4"/>'
+    )
+    found = cell("[robot]\nmodel = 'own.urdf'\nlocked = { j3 = 5 }\n", own=mimicking)
+    assert found.robot.joint_names == ("j1", "j2", "j4", "j5", "j6", "j7")
+
+
 def test_a_locked_joint_of_a_packaged_robot(cell, koch):
     whole, found = cell(koch), cell(koch + "locked = { joint_1 = 0, joint_10 = 3 }\n")
     assert found.robot.joint_names == whole.robot.joint_names[1:9] + whole.robot.joint_names[10:]

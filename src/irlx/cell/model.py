@@ -1,13 +1,15 @@
-"""Which robot a cell names: a packaged one by name, or any URDF by path."""
+"""Which robot a cell names: one that irlx knows by name, or any URDF by path."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 from irlx.cell.errors import CellError
+from irlx.cell.external import external_names
 from irlx.cell.find import is_file
-from irlx.cell.packaged import packaged_cell, packaged_names, packaged_urdf
-from irlx.cell.read import read_cell_file
+from irlx.cell.named import named_section, named_urdf, robot_names
+from irlx.cell.packaged import packaged_names
 from irlx.cell.schema import RobotSection, Section
 from irlx.diagnostics import Place, report
 from irlx.diagnostics.diagnostic import near_matches
@@ -16,10 +18,10 @@ from irlx.robot.urdf import RobotModelError, read_urdf
 
 
 def with_packaged_defaults(asked: RobotSection) -> RobotSection:
-    """The cell's robot section, what it leaves out filled in from the packaged robot it names."""
-    if asked.model not in packaged_names():
+    """The cell's robot section, what it leaves out filled in from the robot it names."""
+    if asked.model is None or asked.model not in robot_names():
         return asked
-    own = read_cell_file(packaged_cell(asked.model), f"{asked.model} (packaged)").robot
+    own = named_section(asked.model)
     merged = own.model_copy(update={name: getattr(asked, name) for name in asked.model_fields_set})
     limits = {name: getattr(asked.limits, name) for name in asked.limits.model_fields_set}
     return merged.model_copy(update={"limits": own.limits.model_copy(update=limits)})
@@ -28,14 +30,14 @@ def with_packaged_defaults(asked: RobotSection) -> RobotSection:
 def without_absent_joints(
     section: RobotSection, asked: RobotSection, robot: RobotDescription
 ) -> RobotSection:
-    """The section with packaged lists, those that `asked` does not give, reduced to the joints of `robot`.
+    """The section with lists of the named robot, those `asked` does not give, for the joints of `robot`.
 
-    A packaged robot has fewer joints than its lists where the cell locks some, or takes another tip.
+    A named robot has fewer joints than its lists where the cell locks some, or takes another tip.
     """
-    if asked.model not in packaged_names():
+    if asked.model is None or asked.model not in robot_names():
         return section
-    own = read_cell_file(packaged_cell(asked.model), f"{asked.model} (packaged)").robot
-    names = read_urdf(packaged_urdf(asked.model), own.tip).joint_names
+    own = named_section(asked.model)
+    names = read_urdf(named_urdf(asked.model, Place(asked.model)), own.tip).joint_names
     kept = [index for index, name in enumerate(names) if name in robot.joint_names]
     lists = _reduced(own, ("start", "weights"), asked, kept)
     limits = _reduced(own.limits, ("position", "speed", "acceleration"), asked.limits, kept)
@@ -56,27 +58,18 @@ def load_robot(section: RobotSection, file: str, folder: Path) -> RobotDescripti
     """Description of the robot a cell names; paths are relative to `folder`, the cell's own.
 
     Raises CellError: IRL610 no model, IRL611 unknown name or missing file, IRL612 a URDF that
-    cannot be used, IRL613 fewer than six axes.
+    cannot be used, IRL613 fewer than six axes, IRL614 a robot of an extra that is not installed.
     """
     place = Place(file, key="robot.model")
     model = section.model
     if model is None:
-        raise CellError(report("IRL610", place, known=", ".join(packaged_names())))
-    text = packaged_urdf(model) if model in packaged_names() else _urdf_file(model, folder, place)
+        raise CellError(report("IRL610", place, **_known()))
+    text = named_urdf(model, place) if model in robot_names() else _urdf_file(model, folder, place)
     # Joint kinds decide the units of locked values, so the model is read before they are known.
-    try:
-        kinds = {joint.name: joint for joint in read_urdf(text, section.tip).joints}
-    except RobotModelError as cause:
-        raise _unusable(cause, model, Place(file, key=_faulty_key(cause, section))) from cause
-    locked = {
-        name: value * 1e-3 if name in kinds and kinds[name].is_prismatic else value * _DEGREE
-        for name, value in section.locked.items()
-    }
-    try:
-        robot = read_urdf(text, section.tip, locked)
-    except RobotModelError as cause:
-        key = f"robot.locked.{cause.subject}" if cause.subject in locked else "robot.model"
-        raise _unusable(cause, model, Place(file, key=key)) from cause
+    held = _read(text, section, dict.fromkeys(section.locked, 0.0), file)
+    slides = {joint.name for joint in held.joints if joint.is_prismatic}
+    locked = {name: value * (1e-3 if name in slides else _DEGREE) for name, value in section.locked.items()}
+    robot = _read(text, section, locked, file)
     if len(robot.axes) < _TASK_ROWS:
         names = ", ".join(robot.joint_names) or "none"
         raise CellError(report("IRL613", place, tip=robot.tip, found=len(robot.axes), names=names))
@@ -85,6 +78,16 @@ def load_robot(section: RobotSection, file: str, folder: Path) -> RobotDescripti
 
 _DEGREE = 0.017453292519943295
 _TASK_ROWS = 6
+
+
+def _read(text: str, section: RobotSection, locked: dict[str, float], file: str) -> RobotDescription:
+    """Robot of a URDF with joints held at `locked` (rad or m). Raises CellError, IRL612, at its key."""
+    try:
+        return read_urdf(text, section.tip, locked)
+    except RobotModelError as cause:
+        subject = cause.subject
+        key = f"robot.locked.{subject}" if subject in locked else _faulty_key(cause, section)
+        raise _unusable(cause, section.model or "", Place(file, key=key)) from cause
 
 
 def _faulty_key(cause: RobotModelError, section: RobotSection) -> str:
@@ -98,14 +101,18 @@ def _unusable(cause: RobotModelError, model: str, place: Place) -> CellError:
     return CellError(report("IRL612", place, model=model, cause=str(cause), near=near))
 
 
+def _known() -> dict[str, Any]:
+    """Names for messages: robots that come with irlx, robots of the extra."""
+    return {"known": ", ".join(packaged_names()), "extra": ", ".join(external_names())}
+
+
 def _urdf_file(model: str, folder: Path, place: Place) -> str:
     path = folder / model
     looks_like_a_path = "/" in model or "." in model
     if not looks_like_a_path or not is_file(path):
-        near = near_matches(model, packaged_names())
+        near = near_matches(model, robot_names())
         tried = "" if not looks_like_a_path else f" (looked for {path})"
-        known = ", ".join(packaged_names())
-        raise CellError(report("IRL611", place, model=model, tried=tried, near=near, known=known))
+        raise CellError(report("IRL611", place, model=model, tried=tried, near=near, **_known()))
     try:
         return path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as cause:

@@ -15,11 +15,16 @@ CELL = (
         "no cell file found; tried {tried}",
         "give one with --cell, or put SYSTEM SPECIFICATION name; into the program and name.toml beside it",
     ),
-    error("IRL610", "the cell names no robot", 'put model = "NAME" under [robot]; packaged: {known}'),
+    error(
+        "IRL610",
+        "the cell names no robot",
+        'put model = "NAME" under [robot]; packaged: {known}; with irlx[robots]: {extra}',
+    ),
     error(
         "IRL611",
         "no robot '{model}'{tried}{near}",
-        "give the path of a URDF relative to the cell file, or a packaged robot: {known}",
+        "give the path of a URDF relative to the cell file, or a packaged robot: {known}; "
+        "with irlx[robots]: {extra}",
     ),
     error("IRL612", "the robot model {model} cannot be used: {cause}{near}"),
     error(
@@ -27,6 +32,7 @@ CELL = (
         "the joints that move the tool frame {tip} are {names}: {found}, but a pose needs at least six",
         "choose another tip, or unlock joints; robots with fewer axes are for a later version",
     ),
+    error("IRL614", "the robot '{model}' is in the package example-robot-data, {cause}: {command}"),
     error(
         "IRL620",
         "{joint} starts at {found} {unit}, outside its limits {lower} to {upper} {unit}",

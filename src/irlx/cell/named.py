@@ -1,0 +1,26 @@
+"""Robots that a cell names instead of giving a URDF: those packaged with irlx, and those of the extra."""
+
+from __future__ import annotations
+
+from irlx.cell.external import external_names, external_section, external_urdf
+from irlx.cell.packaged import packaged_cell, packaged_names, packaged_urdf
+from irlx.cell.read import read_cell_file
+from irlx.cell.schema import RobotSection
+from irlx.diagnostics import Place
+
+
+def robot_names() -> tuple[str, ...]:
+    """Every name that `model` may be, the packaged robots first."""
+    return packaged_names() + external_names()
+
+
+def named_section(name: str) -> RobotSection:
+    """What a robot of that name is by itself: tip, start, weights, limits."""
+    if name in external_names():
+        return external_section(name)
+    return read_cell_file(packaged_cell(name), f"{name} (packaged)").robot
+
+
+def named_urdf(name: str, place: Place) -> str:
+    """URDF text of a robot of that name. Raises CellError, at `place`, where the extra is missing."""
+    return external_urdf(name, place) if name in external_names() else packaged_urdf(name)
