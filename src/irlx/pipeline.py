@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import inf
 from pathlib import Path
 from unicodedata import normalize
+
+import numpy as np
+from numpy.typing import NDArray
 
 from irlx._version import __version__
 from irlx.blocks import Block, Origin, Question
@@ -17,6 +21,8 @@ from irlx.diagnostics import Diagnostic, IrlxError, Place, Span, report
 from irlx.interpreter.interpret import interpret
 from irlx.interpreter.setting import Setting
 from irlx.pacing.pacer import Pacer, PacingSetup
+from irlx.pacing.explanation import TickExplanation
+from irlx.pacing.explanation import explain_tick as explain_row
 from irlx.pacing.rows import MotionRows
 from irlx.program import Program, ProgramError, cell_path, load
 from irlx.report.recording import Recording
@@ -25,6 +31,7 @@ from irlx.robot.kinematics import Kinematics
 from irlx.streams.joint_stream import FORMAT_VERSION, StreamHeader
 from irlx.streams.sample import Sample
 
+Array = NDArray[np.float64]
 PathLike = str | os.PathLike[str]
 Progress = Callable[[Block, float], None]
 """Called after each block with the block and the simulated time so far, s."""
@@ -35,28 +42,41 @@ LONGEST_TICK_MS = 1000.0
 
 @dataclass(frozen=True)
 class Job:
-    """A program and the cell it runs in, checked against each other; tick in ns."""
+    """A program and the cell it runs in, checked against each other; tick in ns.
+
+    A move may take `max_slow` times as long as programmed.
+    """
 
     program: Program
     cell: Cell
     tick_ns: int
+    max_slow: float = inf
 
 
-def prepare(program: Program | PathLike, cell: PathLike | None = None, tick_ms: float | None = None) -> Job:
+def prepare(
+    program: Program | PathLike,
+    cell: PathLike | None = None,
+    tick_ms: float | None = None,
+    max_slow: float | None = None,
+) -> Job:
     """Load what a run needs.
 
     `cell` None: the file that SYSTEM SPECIFICATION names, else the program's own name with .toml.
-    Raises ProgramError, CellError, or IrlxError with IRL006 for a tick out of range.
+    Raises ProgramError, CellError, or IrlxError with IRL006 for a tick or `max_slow` out of range.
     """
     if not isinstance(program, Program):
         program = _loaded(program, cell)
     loaded = load_cell(cell_path(program, cell))
+    if max_slow is not None and not max_slow >= 1.0:
+        cause = "a move cannot be faster than programmed: at least 1"
+        raise IrlxError(report("IRL006", option="--max-slow", value=f"{max_slow:g}", cause=cause))
+    slowest = inf if max_slow is None else max_slow
     if tick_ms is None:
-        return Job(program, loaded, loaded.tick_ns)
+        return Job(program, loaded, loaded.tick_ns, slowest)
     if not LEAST_TICK_MS <= tick_ms <= LONGEST_TICK_MS:
         cause = f"a tick lasts {LEAST_TICK_MS:g} to {LONGEST_TICK_MS:g} ms"
-        raise IrlxError(report("IRL006", value=f"{tick_ms:g}", cause=cause))
-    return Job(program, loaded, round(tick_ms * 1e6))
+        raise IrlxError(report("IRL006", option="--tick", value=f"{tick_ms:g}", cause=cause))
+    return Job(program, loaded, round(tick_ms * 1e6), slowest)
 
 
 def _loaded(path: PathLike, cell: PathLike | None) -> Program:
@@ -103,7 +123,10 @@ class Execution:
     def __init__(self, job: Job) -> None:
         self.job = job
         cell = job.cell
-        setup = PacingSetup(Kinematics(cell.robot), cell.limits, cell.weights, cell.start, job.tick_ns / 1e9)
+        dt = job.tick_ns / 1e9
+        setup = PacingSetup(
+            Kinematics(cell.robot), cell.limits, cell.weights, cell.start, dt, max_slow=job.max_slow
+        )
         self.kinematics = setup.kinematics
         self._pacer = Pacer(setup, self._locate)
 
@@ -140,6 +163,17 @@ class Execution:
             reply = answer(item) if isinstance(item, Question) else None
             if isinstance(item, Block):
                 yield item
+
+    def explain(self, executed: Executed, start: Array, tick: int) -> TickExplanation | None:
+        """Explanation of a tick, None where it is no row of this block; `start` (n,) the row before it."""
+        rows = executed.rows
+        if rows is None or not rows.first_tick <= tick < rows.first_tick + len(rows):
+            return None
+        cell = self.job.cell
+        slides = tuple(axis.is_prismatic for axis in cell.robot.axes)
+        limits = rows.limits or cell.limits
+        names, dt = cell.robot.joint_names, self.job.tick_ns / 1e9
+        return explain_row(rows, start, tick, limits, cell.weights, names, slides, dt)
 
     def recording(self) -> Recording:
         """A recording that begins at the cell's start posture."""
@@ -181,23 +215,29 @@ def run(
     cell: PathLike | None = None,
     tick_ms: float | None = None,
     progress: Progress | None = None,
+    explain_tick: int | None = None,
+    max_slow: float | None = None,
 ) -> Run:
     """Interpret a program, move its robot, and return the joint stream.
 
     `cell`: path of the cell file, by default found beside the program; `tick_ms` overrides the
-    cell's tick. Raises ProgramError and CellError before anything moves, RunError (with what was
+    cell's tick; `explain_tick` asks for `Run.explanation` of that tick; a move that limits make
+    more than `max_slow` times as long as programmed is an error. Raises ProgramError and CellError before anything moves, RunError (with what was
     executed until then) once it does, RunInterrupted on Ctrl-C.
     """
-    job = prepare(program, cell, tick_ms)
-    return execute(job, progress)
+    job = prepare(program, cell, tick_ms, max_slow)
+    return execute(job, progress, explain_tick)
 
 
-def execute(job: Job, progress: Progress | None = None) -> Run:
+def execute(job: Job, progress: Progress | None = None, explain_tick: int | None = None) -> Run:
     """Run a prepared job; see `run`."""
     execution = Execution(job)
     recording = execution.recording()
+    explanation: TickExplanation | None = None
     try:
         for executed in execution:
+            if explain_tick is not None and explanation is None:
+                explanation = execution.explain(executed, recording.last_posture, explain_tick)
             recording.add(executed.block, executed.tick, executed.rows)
             if progress is not None:
                 progress(executed.block, recording.duration)
@@ -213,7 +253,8 @@ def execute(job: Job, progress: Progress | None = None) -> Run:
         raise RunError((fault,), recording.finish(False, (fault,))) from error
     except KeyboardInterrupt as interrupt:
         raise RunInterrupted(recording.finish(False, (*_warnings(job), *execution.warnings))) from interrupt
-    return recording.finish(True, (*_warnings(job), *execution.warnings))
+    finished = recording.finish(True, (*_warnings(job), *execution.warnings))
+    return replace(finished, explanation=explanation)
 
 
 def _warnings(job: Job) -> tuple[Diagnostic, ...]:
@@ -221,14 +262,17 @@ def _warnings(job: Job) -> tuple[Diagnostic, ...]:
 
 
 def stream(
-    program: Program | PathLike, cell: PathLike | None = None, tick_ms: float | None = None
+    program: Program | PathLike,
+    cell: PathLike | None = None,
+    tick_ms: float | None = None,
+    max_slow: float | None = None,
 ) -> Iterator[Sample]:
     """Samples of a run, one after another, motion by motion as they are asked for.
 
     The same samples as `run` gives. Iteration may stop at any sample. What cannot be prepared raises
     here, what goes wrong in motion at the sample it keeps from coming, as IrlxError.
     """
-    return _samples(prepare(program, cell, tick_ms))
+    return _samples(prepare(program, cell, tick_ms, max_slow))
 
 
 def _samples(job: Job) -> Iterator[Sample]:

@@ -5,6 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from irlx.blocks import (
+    ArcCourse,
     Block,
     CyclicBlock,
     FreezeBlock,
@@ -19,6 +20,7 @@ from irlx.blocks import (
     MoveKind,
     Origin,
     PoseTarget,
+    ReconfigureBlock,
 )
 from irlx.blocks.codec import BLOCK_TYPES, BlockFormError, block_from_plain, block_to_plain
 
@@ -35,17 +37,22 @@ poses = st.builds(
     st.none() | st.tuples(numbers, numbers, numbers, numbers),
     st.text(),
 )
+targets = poses | st.builds(JointTarget, vectors)
+courses = st.builds(ArcCourse, targets, st.none() | numbers, st.booleans())
 blocks = st.one_of(
     st.builds(HaltBlock, **common),
     st.builds(FreezeBlock, joints=st.lists(st.integers(1, 9)).map(tuple), **common),
     st.builds(CyclicBlock, active=st.booleans(), **common),
     st.builds(LimitSwitchBlock, kind=kinds, range=st.none() | ranges, **common),
+    st.builds(ReconfigureBlock, target=st.builds(JointTarget, vectors), law=laws, **common),
     st.builds(
         MoveBlock,
         kind=st.sampled_from(MoveKind),
-        target=poses | st.builds(JointTarget, vectors),
+        target=targets,
         law=laws,
         limits=st.lists(st.builds(LimitClause, kinds, ranges, origins), max_size=2).map(tuple),
+        course=st.none() | courses,
+        reconfiguration=st.none() | st.builds(JointTarget, vectors),
         **common,
     ),
 )
@@ -105,3 +112,24 @@ def test_missing_fields_and_other_things() -> None:
         block_from_plain({key: value for key, value in GOOD.items() if key != "law"})
     with pytest.raises(BlockFormError):
         block_from_plain([])
+
+
+@pytest.mark.req("STR-03")
+def test_what_older_streams_lack_has_its_default() -> None:
+    old = {key: value for key, value in GOOD.items() if key != "course"}
+    assert block_from_plain(old) == block_from_plain(GOOD)
+
+
+@pytest.mark.parametrize(
+    ("course", "word"),
+    [
+        ({"via": None}, "course.via.type"),
+        ({"angle": 1.0}, "course.via"),
+        ({"via": {"type": "JointTarget", "values": [1.0]}, "angle": "all"}, "course.angle"),
+        ({"via": {"type": "JointTarget", "values": [1.0]}, "turns_through_via": 1}, "turns_through_via"),
+        (3, "course"),
+    ],
+)
+def test_wrong_courses_name_the_key(course: object, word: str) -> None:
+    with pytest.raises(BlockFormError, match=word.replace(".", r"\.")):
+        block_from_plain({**GOOD, "kind": "CIRCLE", "course": course})

@@ -3,6 +3,7 @@ from math import inf, pi
 import pytest
 
 from irlx.blocks import (
+    ArcCourse,
     Block,
     CyclicBlock,
     FreezeBlock,
@@ -17,6 +18,7 @@ from irlx.blocks import (
     MoveKind,
     Origin,
     PoseTarget,
+    ReconfigureBlock,
 )
 from irlx.blocks.text import block_text
 
@@ -55,6 +57,18 @@ CASES = [
         "speed_ori 90 deg/s acc_ori 180 deg/s2 line 20",
     ),
     (
+        MoveBlock(
+            id=13,
+            origin=AT,
+            kind=MoveKind.CIRCLE,
+            target=JointTarget((pi, 0.1)),
+            law=LAW,
+            course=ArcCourse(PoseTarget((1.0, 2.0, 3.0), None), 2 * pi, True),
+        ),
+        "13 MOVE CIRCLE via (1000 2000 3000) kept in R_BASE to joints (180 100) turning through via "
+        "angle 360 deg speed 1000 mm/s acc 2000 mm/s2 speed_ori 90 deg/s acc_ori 180 deg/s2 line 20",
+    ),
+    (
         LimitSwitchBlock(id=6, origin=AT, kind=LimitKind.POSITION, range=RANGE),
         "6 JOINTLIMIT (-180 -inf) (1 250) line 20",
     ),
@@ -67,6 +81,21 @@ CASES = [
     (CyclicBlock(id=10, origin=AT, active=True), "10 CYCLICSTART line 20"),
     (CyclicBlock(id=11, origin=AT, active=False), "11 CYCLICEND line 20"),
     (HaltBlock(id=12, origin=AT), "12 HALT line 20"),
+    (
+        ReconfigureBlock(id=13, origin=AT, target=JointTarget((-pi / 2, 0.1)), law=LAW),
+        "13 RECONFIGURATION to joints (-90 100) speed 1000 mm/s speed_ori 90 deg/s line 20",
+    ),
+    (
+        MoveBlock(
+            id=14,
+            origin=AT,
+            kind=MoveKind.PTP,
+            target=JointTarget((pi, 0.0)),
+            law=LAW,
+            reconfiguration=JointTarget((pi, 0.002)),
+        ),
+        "14 MOVE PTP to joints (180 0) speed_ptp 50 % acc_ptp 100 % WITH RECONFIGURATION (180 2) line 20",
+    ),
 ]
 
 

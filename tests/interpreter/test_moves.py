@@ -32,6 +32,18 @@ SHARE = "speed_ptp 100 % acc_ptp 100 %"
         ("JOINTACCELLIMIT (0, -1, -2, -3), (4, 5, 6, 7);", "1 JOINTACCELLIMIT (0 -1 -2 -3) (4 5 6 7) line 4"),
         ("JOINTACCELLIMITEND;", "1 JOINTACCELLIMITEND line 4"),
         ("HALT;", "1 HALT line 4"),
+        (
+            "RECONFIGURATION (1, 2, 3, 4);",
+            "1 RECONFIGURATION to joints (1 2 3 4) speed 250 mm/s speed_ori 90 deg/s line 4",
+        ),
+        (
+            "RECONFIGURATION R_JOINT_ACT;",
+            "1 RECONFIGURATION to joints (0 0 0 0) speed 250 mm/s speed_ori 90 deg/s line 4",
+        ),
+        (
+            "MOVE PTP POSITION(1, 2, 3) WITH RECONFIGURATION (1, 2, 3, 4);",
+            f"1 MOVE PTP to (1 2 3) kept in R_BASE {SHARE} WITH RECONFIGURATION (1 2 3 4) line 4",
+        ),
     ],
 )
 def test_blocks_of_statements(lines, statement, expected):
@@ -214,3 +226,25 @@ def test_poses_of_the_cell_are_constants(lines, run_error):
 def test_declaring_a_system_variable(run_error, declaration):
     code, _, _ = run_error(declaration, "MOVE LIN POSITION(1, 2, 3);")
     assert code.startswith("IRL2")
+
+
+@pytest.mark.req("LANG-68")
+def test_one_posture_for_each_target(lines):
+    variables = "VAR MAIN_JOINT: a := (1, 1, 1, 1), b := (2, 2, 2, 2); POSITION: p := (1, 2, 3);"
+    first, second = lines(variables, "MOVE LIN p, p WITH RECONFIGURATION a, b;", joints=4)
+    assert first.endswith("WITH RECONFIGURATION (1 1 1 1) line 4")
+    assert second.endswith("WITH RECONFIGURATION (2 2 2 2) line 4")
+    (arc,) = lines(variables, "MOVE CIRCLE p, p WITH RECONFIGURATION b;", joints=4)
+    assert arc.endswith("WITH RECONFIGURATION (2 2 2 2) line 4")
+
+
+@pytest.mark.req("LANG-65")
+def test_the_speeds_of_a_reconfiguration_are_latched(lines):
+    (line,) = lines("", "R_SPEED := 10; R_SPEED_ORI := 5; RECONFIGURATION (1, 2, 3, 4);", joints=4)
+    assert "speed 10 mm/s speed_ori 5 deg/s" in line
+
+
+@pytest.mark.req("LANG-65")
+@pytest.mark.parametrize("wrong", ["POSITION(1, 2, 3)", "(1, 2, 3)", "5"])
+def test_a_reconfiguration_wants_a_posture(run_error, wrong):
+    assert run_error("", f"RECONFIGURATION {wrong};", joints=4)[0] == "IRL222"

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from irlx.blocks import MotionLaw, MoveBlock, MoveKind, Origin, PoseTarget
+from irlx.blocks import ArcCourse, MotionLaw, MoveBlock, MoveKind, Origin, PoseTarget
 from irlx.diagnostics import Place
 
 
@@ -38,7 +38,7 @@ def slerp(a: np.ndarray, b: np.ndarray, share: float) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Kit:
-    """What the tests of lines build with."""
+    """What the tests of paths build with."""
 
     place: Place
 
@@ -56,6 +56,19 @@ class Kit:
         target = PoseTarget(tuple(float(c) for c in position), quaternion)
         origin = Origin("line.irl", 0, 8, 1)
         return MoveBlock(id=1, origin=origin, kind=MoveKind.LIN, target=target, law=law or Kit.law())
+
+    @staticmethod
+    def circle(via, end, law: MotionLaw | None = None, turns=(None, None), **course: object) -> MoveBlock:
+        """CIRCLE block; `turns` are orientations (x, y, z, w) of via and end, or None."""
+        points = [
+            PoseTarget(
+                tuple(float(c) for c in point), None if turn is None else tuple(float(c) for c in turn)
+            )
+            for point, turn in zip((via, end), turns, strict=True)
+        ]
+        origin = Origin("line.irl", 0, 8, 1)
+        data = {"target": points[1], "law": law or Kit.law(), "course": ArcCourse(points[0], **course)}
+        return MoveBlock(id=1, origin=origin, kind=MoveKind.CIRCLE, **data)
 
     @staticmethod
     def quaternion(rng: np.random.Generator) -> np.ndarray:

@@ -114,3 +114,12 @@ def test_half_a_turn_has_no_axis(kit, short: float, defined: bool) -> None:
     axis = np.array([1.0, -2.0, 2.0]) / 3.0
     line = Line(np.zeros(3), np.eye(3), np.ones(3), kit.turned(np.eye(3), (np.pi - short) * axis))
     assert line.axis_is_defined is defined
+
+
+@pytest.mark.parametrize("seed", SEEDS[::8])
+def test_second_derivatives_are_zero(kit, seed: int) -> None:
+    line, _, _ = random_line(kit, seed)
+    bend, turn_bend = line.second_derivatives(np.linspace(0.0, line.length, 7))
+    np.testing.assert_array_equal(bend, np.zeros((7, 3)))
+    np.testing.assert_array_equal(turn_bend, np.zeros((7, 3)))
+    assert (line.curvature, line.turn_bend) == (0.0, 0.0)

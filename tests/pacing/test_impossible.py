@@ -34,24 +34,32 @@ def test_position_limit_on_the_way_is_named_with_way_and_rest(kit, shop) -> None
     assert tick == pytest.approx((0.3 / 0.5 + 0.5 / 2.0 / 2.0) / shop.dt, abs=2)
 
 
-def test_speed_limit_that_holds_is_named(kit, shop) -> None:
-    """y alone moves the tool along y; 0.4 m/s do not follow 0.5 m/s, although the target is in reach."""
+@pytest.mark.req("MOT-21")
+def test_a_speed_limit_slows_the_tool_and_is_named(kit, shop) -> None:
+    """y alone moves the tool along y: 0.4 m/s do not follow 0.5 m/s, so the trapezoid peaks at 0.4 m/s."""
     shop.switch(LimitKind.SPEED, kit.range([1, 1, 0.4, 1, 1, 1, 1]))
-    reason = reason_of(lambda: shop.line(kit.beyond(0.0, 0.6, 0.0)))
-    assert reason.code == "IRL520"
-    assert "y is at its upper speed limit 400 mm/s" in reason.message
-    assert "the target itself can be reached in some posture" in reason.message
-    assert float(reason.data["way"]) == pytest.approx(1000 * 0.4**2 / 4.0, abs=5.0)
+    rows = shop.line(kit.beyond(0.0, 0.6, 0.0))
+    assert len(rows) * shop.dt == pytest.approx(0.6 / 0.4 + 0.4 / 2.0, abs=3.0 * shop.dt)
+    (slowing,) = rows.path.slowings
+    assert slowing.joint == 2
+    assert slowing.governor.name == "SPEED"
+    assert slowing.requested == pytest.approx(0.5)
+    assert slowing.achieved == pytest.approx(0.4, rel=1e-2)
+    programmed = 0.6 / 0.5 + 0.5 / 2.0
+    assert slowing.lost == pytest.approx(0.6 / 0.4 + 0.4 / 2.0 - programmed, abs=2.0 * shop.dt)
 
 
-def test_acceleration_limit_that_holds_is_named_in_the_first_tick(kit) -> None:
+@pytest.mark.req("MOT-21")
+def test_an_acceleration_limit_slows_a_turn(kit) -> None:
+    """The tool turns by joint a; with 0.5 rad/s2 a turn of 0.8 rad takes a triangle of 2 sqrt(0.8 / 0.5) s."""
     shop = kit.shop(limits=kit.limits(5.0, np.inf, [9.0, 9, 9, 9, 0.5, 9, 9]))
     turn = kit.rotation(kit.moved(0, 0, 0, 0, -0.8, 0, 0))
-    reason = reason_of(lambda: shop.line(kit.position(kit.start), turn))
-    assert reason.code == "IRL520"
-    assert reason.data["tick"] == 1
-    assert "a is at its lower acceleration limit -28.6479 deg/s2" in reason.message
-    assert reason.data["length"] == "45.8366 deg"
+    rows = shop.line(kit.position(kit.start), turn)
+    assert rows.path.planned
+    reason = max(rows.path.slowings, key=lambda slowing: slowing.lost)
+    assert reason.governor.name == "ACCELERATION"
+    peak = np.abs(np.diff(np.vstack([kit.start, kit.start, rows.q]), n=2, axis=0)).max(axis=0) / shop.dt**2
+    assert 0.49 < peak[4] <= 0.5 * (1.0 + 1e-9)
 
 
 def test_both_sides_are_told_apart(kit, shop) -> None:

@@ -9,6 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from irlx.blocks import (
+    ArcCourse,
     Block,
     CyclicBlock,
     FreezeBlock,
@@ -143,6 +144,35 @@ class Maker:
         rows[:, 2:4] = points[:, 1:]
         if turn is not None:
             rows[:, 4:7] = (r0 * Rotation.from_rotvec(s[:, None] * step)).as_euler("ZYX")
+        self.emit(number, rows)
+
+    def circle(self, centre, via: float, end: float, angle=None, turn=None, ticks: int = 60, **data) -> None:
+        """CIRCLE about the z axis through `centre` (x, y), via and end point at angles (rad) from the start;
+        travels `angle` instead of `end` where given. The orientation turns by a rotation vector or is kept.
+        """
+        start = self.rows[-1]
+        p0, r0 = pose_of(start)
+        arm = p0 - np.array([*centre, p0[2]])
+
+        def point(phi: float) -> np.ndarray:
+            return p0 - arm + Rotation.from_rotvec([0.0, 0.0, phi]).apply(arm)
+
+        step = np.zeros(3) if turn is None else np.array(turn, dtype=float)
+        goal = None if turn is None else tuple((r0 * Rotation.from_rotvec(step)).as_quat().tolist())
+        target, middle = (
+            PoseTarget(tuple(point(end).tolist()), goal),
+            PoseTarget(tuple(point(via).tolist()), None),
+        )
+        more = {"target": target, "course": ArcCourse(middle, angle), "law": LAW, **data}
+        number = self.record(MoveBlock, kind=MoveKind.CIRCLE, **more)
+        # A negative ANGLE goes against the sense from start over via to end.
+        travel = end if angle is None else angle * np.sign(end)
+        rows = np.repeat(start[None], ticks, axis=0)
+        for row, share in zip(rows, smooth(ticks), strict=True):
+            position = point(share * travel)
+            row[1:4] = position - np.array([start[0], 0.0, 0.0])
+            if turn is not None:
+                row[4:7] = (r0 * Rotation.from_rotvec(share * step)).as_euler("ZYX")
         self.emit(number, rows)
 
     def switch(self, kind: LimitKind, bound: np.ndarray | None) -> None:

@@ -6,7 +6,7 @@ numbered from 1 in the robot's order.
 """
 
 from irlx.blocks.block import Block, HaltBlock, Origin
-from irlx.blocks.move import JointTarget, MotionLaw, MoveBlock, MoveKind, PoseTarget
+from irlx.blocks.move import ArcCourse, JointTarget, MotionLaw, MoveBlock, MoveKind, PoseTarget
 from irlx.blocks.options import (
     CyclicBlock,
     FreezeBlock,
@@ -16,8 +16,10 @@ from irlx.blocks.options import (
     LimitSwitchBlock,
 )
 from irlx.blocks.questions import AskPosture, Question
+from irlx.blocks.reconfigure import ReconfigureBlock
 
 __all__ = [
+    "ArcCourse",
     "AskPosture",
     "Block",
     "CyclicBlock",
@@ -34,4 +36,5 @@ __all__ = [
     "Origin",
     "PoseTarget",
     "Question",
+    "ReconfigureBlock",
 ]

@@ -1,13 +1,14 @@
 """Function blocks <-> plain data (dictionaries, lists, strings, numbers), without loss.
 
 The form of a block follows from its dataclass: one key a field, enumerations by value, tuples as
-lists. ``type`` names the class of a block, and of a part where several classes may stand.
+lists. ``type`` names the class of a block, and of a part where several classes may stand. A field with a
+default may be missing: streams written before it existed stay readable.
 """
 
 from __future__ import annotations
 
 import types
-from dataclasses import fields, is_dataclass
+from dataclasses import MISSING, fields, is_dataclass
 from enum import Enum
 from functools import cache
 from math import isfinite
@@ -16,9 +17,11 @@ from typing import Any, Union, get_args, get_origin, get_type_hints
 from irlx.blocks.block import Block, HaltBlock
 from irlx.blocks.move import MoveBlock
 from irlx.blocks.options import CyclicBlock, FreezeBlock, LimitSwitchBlock
+from irlx.blocks.reconfigure import ReconfigureBlock
 
 BLOCK_TYPES: dict[str, type[Block]] = {
-    kind.__name__: kind for kind in (MoveBlock, HaltBlock, LimitSwitchBlock, FreezeBlock, CyclicBlock)
+    kind.__name__: kind
+    for kind in (MoveBlock, ReconfigureBlock, HaltBlock, LimitSwitchBlock, FreezeBlock, CyclicBlock)
 }
 """Every block there is, by the name that its plain form carries."""
 
@@ -105,15 +108,16 @@ def _dataclass_from(kind: Any, plain: object, where: str) -> Any:
     if not isinstance(plain, dict):
         raise BlockFormError(f"{where or 'block'}: needs a {kind.__name__}, found {plain!r}")
     hints = _hints(kind)
-    names = [field.name for field in fields(kind)]
+    optional = {field.name: field.default is not MISSING for field in fields(kind)}
     for key in plain:
-        if key not in names:
+        if key not in optional:
             raise BlockFormError(f"{_join(where, str(key))}: a {kind.__name__} has no such field")
     values = {}
-    for name in names:
-        if name not in plain:
+    for name, may_miss in optional.items():
+        if name in plain:
+            values[name] = _decode(hints[name], plain[name], _join(where, name))
+        elif not may_miss:
             raise BlockFormError(f"{_join(where, name)}: missing")
-        values[name] = _decode(hints[name], plain[name], _join(where, name))
     return kind(**values)
 
 

@@ -1,4 +1,4 @@
-"""The block of one move: kind, target, time law, and the limit clauses that hold for it alone."""
+"""The block of one move: kind, target, course, time law, and the limit clauses that hold for it alone."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ class MoveKind(str, Enum):
 
     PTP = "PTP"
     LIN = "LIN"
+    CIRCLE = "CIRCLE"
 
 
 @dataclass(frozen=True)
@@ -37,6 +38,20 @@ class JointTarget:
 
 
 @dataclass(frozen=True)
+class ArcCourse:
+    """How a CIRCLE gets to its target: through `via`, and on by `angle` where the program gives one.
+
+    `angle` in rad, not 0, from the start of the move, negative backwards: the target's position then fixes
+    only the plane, and its orientation is that at the end. `turns_through_via` makes the orientation of
+    `via` count; otherwise only its position does.
+    """
+
+    via: PoseTarget | JointTarget
+    angle: float | None = None
+    turns_through_via: bool = False
+
+
+@dataclass(frozen=True)
 class MotionLaw:
     """Upper bounds of the programmed motion, latched when the statement ran.
 
@@ -55,9 +70,15 @@ class MotionLaw:
 
 @dataclass(frozen=True, kw_only=True)
 class MoveBlock(Block):
-    """One move of the tool (LIN) or of the joints (PTP) to a target."""
+    """One move of the tool (LIN, CIRCLE) or of the joints (PTP) to a target; a CIRCLE has a `course`.
+
+    `reconfiguration`: posture to be drawn to on the way, the target's pose being kept; the cyclic option
+    is off for such a move.
+    """
 
     kind: MoveKind
     target: PoseTarget | JointTarget
     law: MotionLaw
     limits: tuple[LimitClause, ...] = ()
+    course: ArcCourse | None = None
+    reconfiguration: JointTarget | None = None

@@ -9,6 +9,7 @@ from math import degrees
 from irlx.blocks.block import Block, HaltBlock
 from irlx.blocks.move import JointTarget, MotionLaw, MoveBlock, MoveKind, PoseTarget
 from irlx.blocks.options import CyclicBlock, FreezeBlock, JointRange, LimitKind, LimitSwitchBlock
+from irlx.blocks.reconfigure import ReconfigureBlock
 
 NEGLIGIBLE = 1e-12
 """Numbers smaller than this print as 0: they are what sin(180 degrees) leaves behind."""
@@ -49,9 +50,17 @@ def _(block: HaltBlock, joint_units: Sequence[str]) -> str:
 
 @_words.register
 def _(block: MoveBlock, joint_units: Sequence[str]) -> str:
-    words = [f"MOVE {block.kind.value} to {_target(block.target, joint_units)}", _law(block.kind, block.law)]
+    words = [f"MOVE {block.kind.value}", *_way(block, joint_units), _law(block.kind, block.law)]
     words += [f"WITH {_SWITCH[clause.kind]} {_range(clause.range, joint_units)}" for clause in block.limits]
+    if block.reconfiguration is not None:
+        words.append(f"WITH RECONFIGURATION {_joint_values(block.reconfiguration.values, joint_units)}")
     return " ".join(words)
+
+
+@_words.register
+def _(block: ReconfigureBlock, joint_units: Sequence[str]) -> str:
+    law = f"speed {_mm(block.law.speed)} mm/s speed_ori {_deg(block.law.speed_ori)} deg/s"
+    return f"RECONFIGURATION to {_target(block.target, joint_units)} {law}"
 
 
 @_words.register
@@ -78,6 +87,16 @@ def _target(target: PoseTarget | JointTarget, joint_units: Sequence[str]) -> str
     position = _group(map(_mm, target.position))
     orientation = "kept" if target.orientation is None else _group(map(number, target.orientation))
     return f"{position} {orientation} in {target.frame}"
+
+
+def _way(block: MoveBlock, joint_units: Sequence[str]) -> list[str]:
+    """Words for via point, target and travel of a move."""
+    words = [f"to {_target(block.target, joint_units)}"]
+    if block.course is not None:
+        words.insert(0, f"via {_target(block.course.via, joint_units)}")
+        words += ["turning through via"] if block.course.turns_through_via else []
+        words += [f"angle {_deg(block.course.angle)} deg"] if block.course.angle is not None else []
+    return words
 
 
 def _law(kind: MoveKind, law: MotionLaw) -> str:

@@ -44,6 +44,18 @@ def add_parser(commands: Any) -> None:
         "(default: P.irdata beside the program, or in the working folder)",
     )
     parser.add_argument("--tick", type=float, metavar="MS", help="duration of a tick (default: the cell's)")
+    parser.add_argument(
+        "--max-slow",
+        type=float,
+        metavar="F",
+        help="end with IRL525 where limits make a move more than F times as long as programmed",
+    )
+    parser.add_argument(
+        "--explain-tick",
+        type=int,
+        metavar="N",
+        help="also tell what decided tick N: demand, bounds of every joint with their source, criteria",
+    )
     parser.add_argument("--json", action="store_true", help="print the summary as JSON")
     parser.add_argument("--quiet", action="store_true", help="no progress, no summary")
     parser.add_argument("--no-verify", action="store_true", help="do not check the written files")
@@ -60,7 +72,7 @@ def command(options: argparse.Namespace) -> int:
 
     try:
         with _progress(options) as progress:
-            run = execute(job, progress)
+            run = execute(job, progress, options.explain_tick)
     except RunError as error:
         print_diagnostics(error.diagnostics)
         _keep_partial(error.run, outputs, options)
@@ -88,7 +100,7 @@ def _prepared(options: argparse.Namespace) -> tuple[Job, list[Path]]:
         program = load(options.program, options.cell)
         from irlx.pipeline import prepare
 
-        job = prepare(program, options.cell, options.tick)
+        job = prepare(program, options.cell, options.tick, options.max_slow)
         inputs = (program.path, Path(job.cell.file))
         return job, output_paths(options.output, program.path, inputs)
     except IrlxError as error:
@@ -154,6 +166,18 @@ def _keep_partial(run: Run, outputs: list[Path], options: argparse.Namespace) ->
         print(json.dumps(plain, indent=2))
 
 
+def _print_tick(run: Run, options: argparse.Namespace) -> None:
+    from irlx.cli.output import encodable
+    from irlx.report.tick_text import tick_text
+
+    if options.explain_tick is None:
+        return
+    words = f"tick {options.explain_tick}: no motion has it; the run has ticks 0 to {len(run.t) - 1}"
+    if run.explanation is not None:
+        words = tick_text(run.explanation)
+    print(encodable(words, sys.stdout) + "\n")
+
+
 def _plain_diagnostics(diagnostics: Iterable[Diagnostic]) -> list[dict[str, object]]:
     return [
         {"code": d.code, "severity": d.severity.value, "message": d.message, "place": str(d.place or "")}
@@ -176,12 +200,14 @@ def _print_summary(
     if options.json:
         plain = {
             "summary": run.summary.to_plain(),
+            "tick": run.explanation.to_plain() if run.explanation is not None else None,
             "files": [str(path) for path in outputs],
             "verified": {name: report.passed for name, report in reports.items()},
             "diagnostics": _plain_diagnostics(run.diagnostics),
         }
         print(json.dumps(plain, indent=2))
         return
+    _print_tick(run, options)
     if not options.quiet:
         words = summary_text(run.summary, run.stream.header.joint_units, run.joint_names)
         print(encodable(words, sys.stdout))

@@ -7,6 +7,7 @@ from math import radians
 from pathlib import PurePath
 
 from irlx.blocks import (
+    ArcCourse,
     AskPosture,
     Block,
     CyclicBlock,
@@ -23,6 +24,7 @@ from irlx.blocks import (
     Origin,
     PoseTarget,
     Question,
+    ReconfigureBlock,
 )
 from irlx.diagnostics import SourceText
 from irlx.interpreter.declare import declared_scope
@@ -33,7 +35,7 @@ from irlx.interpreter.quaternion import Vector
 from irlx.interpreter.scope import Variable
 from irlx.interpreter.setting import Setting
 from irlx.interpreter.support import MOVE_PARAMS, missing_in_move, part_name, reads_actual
-from irlx.interpreter.types import POSE, POSITION, Record, Type
+from irlx.interpreter.types import POSE, POSITION, STRING, Record, Type
 from irlx.interpreter.values import RecordValue, Value, is_set
 from irlx.language import tree
 
@@ -74,6 +76,8 @@ class _Interpreter:
                     self._assign(statement)
                 case tree.Move():
                     yield from self._move(statement)
+                case tree.Reconfiguration():
+                    yield self._reconfigure(statement)
                 case tree.Halt():
                     yield HaltBlock(id=self._next_id(), origin=self._origin(statement))
                     return
@@ -86,9 +90,10 @@ class _Interpreter:
         self._blocks += 1
         return self._blocks
 
-    def _origin(self, node: tree.Node) -> Origin:
+    def _origin(self, node: tree.Node, last: tree.Node | None = None) -> Origin:
+        """Place of a node, or of all from it to the end of a later one."""
         line, _ = self._source.line_and_column(node.span.start)
-        return Origin(PurePath(self._source.name).name, node.span.start, node.span.end, line)
+        return Origin(PurePath(self._source.name).name, node.span.start, (last or node).span.end, line)
 
     def _set_actual(self, joints: tuple[float, ...]) -> None:
         """Store the posture (rad, m) in R_JOINT_ACT (deg, mm)."""
@@ -165,16 +170,56 @@ class _Interpreter:
             if isinstance(clause, tree.WithLimit)
             for origin in (self._origin(clause),)
         )
-        for expression in statement.targets:
+        stops = _stops(statement)
+        for (via, expression), posture in zip(stops, self._postures(statement, len(stops)), strict=True):
             target = self._target(expression)
+            origin = (
+                self._origin(via or expression, expression) if len(stops) > 1 else self._origin(statement)
+            )
             yield MoveBlock(
                 id=self._next_id(),
-                origin=self._origin(statement if len(statement.targets) == 1 else expression),
+                origin=origin,
                 kind=MoveKind(statement.kind),
                 target=target,
                 law=law,
                 limits=limits,
+                course=None if via is None else self._course(statement, via),
+                reconfiguration=posture,
             )
+
+    def _postures(self, statement: tree.Move, moves: int) -> list[JointTarget | None]:
+        """Posture of WITH RECONFIGURATION for each of the moves that a MOVE makes."""
+        for clause in statement.clauses:
+            if isinstance(clause, tree.WithReconfiguration):
+                return [self._posture(expression) for expression in clause.targets]
+        return [None] * moves
+
+    def _posture(self, expression: tree.Expression) -> JointTarget:
+        main, joint = self._scope.types["main_joint"], self._scope.types["joint"]
+        value = self._evaluator.one_of(expression, (main, joint))
+        if not isinstance(value, RecordValue):
+            raise TypeError("postures are records")
+        return JointTarget(self._joint_values(value.values[0] if value.type == joint else value))
+
+    def _reconfigure(self, statement: tree.Reconfiguration) -> Block:
+        target, law = self._posture(statement.target), self._law(statement)
+        return ReconfigureBlock(id=self._next_id(), origin=self._origin(statement), target=target, law=law)
+
+    def _course(self, statement: tree.Move, via: tree.Expression) -> ArcCourse:
+        """Via point of a CIRCLE with what ANGLE and CIRC_ORI say."""
+        given = {param.name.key: param.value for param in statement.params}
+        angle, turning = None, "END"
+        if "angle" in given:
+            angle = radians(self._evaluator.number(given["angle"]))
+            if angle == 0.0:
+                data = {"param": "ANGLE", "expected": "other than 0", "value": "0"}
+                raise fail("IRL505", self._source, given["angle"].span, **data)
+        if "circ_ori" in given:
+            turning = str(self._evaluator.value(given["circ_ori"], STRING))
+            if turning.upper() not in ("VIA", "END"):
+                data = {"param": "CIRC_ORI", "expected": "'VIA' or 'END'", "value": f"'{turning}'"}
+                raise fail("IRL505", self._source, given["circ_ori"].span, **data)
+        return ArcCourse(self._target(via), angle, turning.upper() == "VIA")
 
     def _target(self, expression: tree.Expression) -> PoseTarget | JointTarget:
         main, joint = self._scope.types["main_joint"], self._scope.types["joint"]
@@ -188,8 +233,9 @@ class _Interpreter:
             return PoseTarget(_metres(at), (x, y, z, w))
         return JointTarget(self._joint_values(value.values[0] if value.type == joint else value))
 
-    def _law(self, statement: tree.Move) -> MotionLaw:
-        given = {param.name.key: param.value for param in statement.params}
+    def _law(self, statement: tree.Move | tree.Reconfiguration) -> MotionLaw:
+        params = statement.params if isinstance(statement, tree.Move) else ()
+        given = {param.name.key: param.value for param in params}
 
         def real(param: str) -> float:
             expression = given.get(param)
@@ -224,6 +270,14 @@ class _Interpreter:
             data = {"param": name.upper(), "expected": "at most 100 %", "value": f"{percent:g}"}
             raise fail("IRL505", self._source, node.span, **data)
         return percent / 100.0
+
+
+def _stops(statement: tree.Move) -> list[tuple[tree.Expression | None, tree.Expression]]:
+    """Where the moves of a MOVE end, each with its via point: CIRCLE takes its targets in pairs."""
+    targets = statement.targets
+    if statement.kind != "CIRCLE":
+        return [(None, target) for target in targets]
+    return list(zip(targets[::2], targets[1::2], strict=True))
 
 
 def _metres(vector: Vector) -> Vector:

@@ -27,6 +27,7 @@ _STATEMENTS = (
     tree.FreezeEnd,
     tree.CyclicStart,
     tree.CyclicEnd,
+    tree.Reconfiguration,
 )
 _READ_ONLY_FUNCTIONS = (frozenset(builtins.FUNCTIONS) | frozenset(builtins.TYPES)) - frozenset(FUNCTIONS)
 _ACTUAL = "r_joint_act"
@@ -39,8 +40,10 @@ MOVE_PARAMS = {
     "speed_ptp": "R_SPEED_PTP",
     "acc_ptp": "R_ACC_PTP",
     "time": "",
+    "angle": "",
+    "circ_ori": "",
 }
-"""Executed parameters of MOVE by casefolded name, and the system variable with their default."""
+"""Executed parameters of MOVE by casefolded name, and the system variable with their default, '' for none."""
 
 _NAMES = {
     "ImportFrom": "FROM .. IMPORT",
@@ -66,10 +69,8 @@ _NAMES = {
     "WaitFor": "WAIT FOR",
     "ObstacleStart": "OBSTACLE",
     "ObstacleEnd": "OBSTACLEEND",
-    "Reconfiguration": "RECONFIGURATION",
     "CriterionStart": "CRITERION",
     "CriterionEnd": "CRITERIONEND",
-    "WithReconfiguration": "WITH RECONFIGURATION",
     "WithCriterion": "WITH CRITERION",
     "WithTolerance": "WITH TOLERANCE",
 }
@@ -86,14 +87,17 @@ def missing_in_move(move: tree.Move) -> tuple[tree.Node, str] | None:
         return move, "MOVE_INC"
     if move.path:
         return move, f"MOVE {move.kind} PATH"
-    if move.kind not in ("PTP", "LIN"):
+    if move.kind not in ("PTP", "LIN", "CIRCLE"):
         return move, f"MOVE {move.kind}"
     for param in move.params:
         if param.name.key not in MOVE_PARAMS:
             return param, f"the parameter {param.name.name}"
     for clause in move.clauses:
-        if not isinstance(clause, tree.WithLimit):
+        if not isinstance(clause, tree.WithLimit | tree.WithReconfiguration):
             return clause, part_name(clause)
+        postures = clause.targets if isinstance(clause, tree.WithReconfiguration) else ()
+        if move.kind == "CIRCLE" and len(postures) == len(move.targets):
+            return postures[0], "a posture for the via point"
     return None
 
 

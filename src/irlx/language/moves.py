@@ -39,8 +39,8 @@ def _kind(move: tree.Move) -> Iterator[tuple[str, Span, dict[str, Any]]]:
     if move.kind == "CIRCLE" and not move.path and len(move.targets) % 2:
         yield "IRL403", move.span, {"count": len(move.targets)}
     for param in move.params:
-        if param.name.key == "angle" and move.kind != "CIRCLE":
-            yield "IRL404", param.span, {"kind": move.kind}
+        if param.name.key in ("angle", "circ_ori") and move.kind != "CIRCLE":
+            yield "IRL404", param.span, {"param": param.name.key.upper(), "kind": move.kind}
 
 
 def _reconfigurations(move: tree.Move) -> Iterator[tuple[str, Span, dict[str, Any]]]:

@@ -41,6 +41,26 @@ class Trapezoid:
         """Acceleration of the ramps, per s2."""
         return self.speed / self.ramp if self.ramp > 0.0 else 0.0
 
+    @property
+    def corners(self) -> tuple[float, ...]:
+        """Ways at which the law changes from ramp to cruise to ramp, both ends included."""
+        risen = 0.5 * self.speed * self.ramp
+        inner = (risen, self.length - risen) if self.cruise > 0.0 else (0.5 * self.length,)
+        return (0.0, *inner, self.length)
+
+    def rates_at(self, s: Array) -> Array:
+        """Rate ds/dt at the ways s (N,); on the ramps sqrt(2 acc s)."""
+        nearest_end = np.clip(np.minimum(s, self.length - s), 0.0, None)
+        return np.asarray(np.minimum(np.sqrt(2.0 * self.acc * nearest_end), self.speed))
+
+    def times_at(self, s: Array) -> Array:
+        """Time at which each of the ways s (N,) is reached, s from the start."""
+        acc, risen = self.acc, 0.5 * self.speed * self.ramp
+        up = np.sqrt(2.0 * np.clip(s, 0.0, risen) / acc)
+        flat = (np.clip(s, risen, self.length - risen) - risen) / self.speed
+        down = np.sqrt(2.0 * np.clip(self.length - s, 0.0, risen) / acc)
+        return np.asarray(up + flat + self.ramp - down)
+
     def stretched(self, duration: float) -> Trapezoid:
         """Same shape in another time: every speed falls by the factor by which time grows."""
         factor = duration / self.duration

@@ -11,15 +11,20 @@ from numpy.typing import NDArray
 
 from irlx.blocks import LimitKind, Origin
 from irlx.diagnostics import Diagnostic, Place, report
-from irlx.motion.line import Line
+from irlx.motion.plan_path import PlannedPath
+from irlx.motion.pose_path import PosePath
+from irlx.pacing.demand import Demand
+from irlx.pacing.path_motion import Failure
 from irlx.pacing.row_check import BrokenBound
+from irlx.pacing.slowdown.clock_bounds import Governor
+from irlx.pacing.slowdown.ladder import TimedCurve
 from irlx.pacing.walk import Halt
 from irlx.robot.description import RobotDescription
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
 from irlx.transform.nearest import Nearest, scaled_singular_values
 from irlx.transform.posture_search import closest, nearest_approach
-from irlx.transform.step_bounds import BoundSource
+from irlx.transform.step_bounds import BoundSource, StepBounds
 
 Array = NDArray[np.float64]
 
@@ -51,7 +56,7 @@ def joint_value(robot: RobotDescription, joint: int, value: float, per: str = ""
 
 
 def explain_halt(
-    halt: Halt, around: Surroundings, path: Line, goal: Nearest | None, place: Place
+    halt: Halt, around: Surroundings, path: PosePath, goal: Nearest | None, place: Place
 ) -> Diagnostic:
     """Diagnostic of a tick that no joint step can do (IRL520: bounds, IRL521: out of reach)."""
     robot = around.kinematics.description
@@ -60,7 +65,7 @@ def explain_halt(
         solution.q, around.kinematics.target(halt.demand.rotation, halt.demand.position)
     )
     sigma = float(scaled_singular_values(jacobian[:, around.free], robot.reach)[-1])
-    unit, scale = ("deg", np.degrees(1.0)) if path.is_pure_turn else ("mm", 1000.0)
+    unit, scale = _way_unit(path)
     held = _held_joints(halt, around)
     data: dict[str, Any] = {
         "tick": halt.demand.tick,
@@ -71,6 +76,70 @@ def explain_halt(
         "missing": _missing(solution.twist, goal),
     }
     return report("IRL520" if held else "IRL521", place, **data)
+
+
+def explain_failure(
+    failure: Failure,
+    around: Surroundings,
+    plan: PlannedPath,
+    first_tick: int,
+    goal: Nearest | None,
+    place: Place,
+) -> Diagnostic:
+    """Diagnostic of a motion that no clock leads through.
+
+    IRL520 and IRL521: a place that no posture within the position limits reaches; IRL524: the clock
+    would stand still for a bound; IRL523: rows that pass a bound however slow.
+    """
+    refusal, path = failure.refusal, plan.path
+    if refusal.solution is not None:
+        tick = first_tick + int(
+            plan.programmed.times_at(np.array([refusal.s]))[0] / plan.programmed.duration * plan.ticks
+        )
+        nowhere = np.full(refusal.solution.q.size, np.inf)
+        source = np.full(nowhere.size, BoundSource.POSITION, dtype=np.int8)
+        poses = path.poses(np.array([refusal.s]))
+        demand = Demand(tick, refusal.s, poses.position[0], poses.rotation[0], np.zeros(6))
+        bounds = StepBounds(-nowhere, nowhere, source, source)
+        return explain_halt(Halt(demand, bounds, refusal.solution), around, path, goal, place)
+    if refusal.timed is not None:
+        return _explain_standing(refusal.timed, refusal.knot, around, path, place)
+    broken = refusal.broken or failure.broken
+    if broken is None:
+        raise ArithmeticError("a motion was refused without a reason: the planner is at fault")
+    return explain_broken_row(broken, first_tick, around.kinematics.description, place)
+
+
+def _explain_standing(
+    timed: TimedCurve, knot: int, around: Surroundings, path: PosePath, place: Place
+) -> Diagnostic:
+    """IRL524: at some place the clock stands, or nearly so, because of a joint's speed or acceleration."""
+    kinematics, clock = around.kinematics, timed.clock
+    robot = kinematics.description
+    joint, kind = int(clock.joint[knot]), Governor(int(clock.governor[knot]))
+    unit, scale = _way_unit(path)
+    bound = "the limits together"
+    if joint >= 0 and kind is not Governor.PROGRAM:
+        name = kind.name.lower()
+        value = float(np.min(np.abs([side[joint] for side in around.limits.pair(name)])))
+        per = "/s" if kind is Governor.SPEED else "/s2"
+        bound = f"{robot.axes[joint].name} and its {name} limit {joint_value(robot, joint, value, per)}"
+    q = timed.curve.q[knot]
+    _, jacobian = kinematics.difference(q, kinematics.target(*kinematics.tool_pose(q)))
+    sigma = float(scaled_singular_values(jacobian[:, around.free], robot.reach)[-1])
+    way = f"{float(clock.s[knot]) * scale:.6g}"
+    return report(
+        "IRL524",
+        place,
+        way=way,
+        length=f"{path.length * scale:.6g} {unit}",
+        bound=bound,
+        sigma=f"{sigma:.2g}",
+    )
+
+
+def _way_unit(path: PosePath) -> tuple[str, float]:
+    return ("deg", float(np.degrees(1.0))) if path.is_pure_turn else ("mm", 1000.0)
 
 
 def _missing(twist: Array, goal: Nearest | None) -> str:
@@ -151,6 +220,13 @@ def explain_broken_row(
         bound=joint_value(robot, broken.joint, broken.bound, per),
         tick=first_tick + broken.row,
     )
+
+
+def slower_than_allowed(duration: float, programmed: float, longest: float, place: Place) -> Diagnostic:
+    """IRL525: a move slowed more than the caller allows; all in s."""
+    data: dict[str, Any] = {"duration": f"{duration:.4g}", "programmed": f"{programmed:.4g}"}
+    data |= {"factor": f"{duration / programmed:.3g}", "allowed": f"{longest / programmed:.3g}"}
+    return report("IRL525", place, **data)
 
 
 def goal_shortfall(around: Surroundings, rotation: Array, position: Array, q: Array) -> Nearest:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,36 +21,49 @@ from irlx.blocks import (
     Origin,
     PoseTarget,
     Question,
+    ReconfigureBlock,
 )
 from irlx.diagnostics import Diagnostic, Place, report
-from irlx.motion.line import Line
 from irlx.motion.plan_joint_line import plan_joint_line
-from irlx.motion.plan_line import plan_line
+from irlx.motion.plan_path import PlannedPath, plan_path
+from irlx.motion.whole_ticks import ticks_of_move
 from irlx.pacing.clock import programmed_clock
-from irlx.pacing.demand import Demand, DemandModifier, demands
+from irlx.pacing.demand import Demand, DemandModifier
 from irlx.pacing.errors import PacingError
-from irlx.pacing.impossible import Surroundings, explain_broken_row, explain_halt, goal_shortfall, joint_value
+from irlx.pacing.impossible import (
+    Surroundings,
+    explain_broken_row,
+    explain_failure,
+    goal_shortfall,
+    joint_value,
+    slower_than_allowed,
+)
 from irlx.pacing.options import LimitsInForce, Options, limits_in_force
+from irlx.pacing.path_motion import Failure, PacedPath, PathMotion, pace_path
+from irlx.pacing.posture_left import (
+    JOINTS_GIVEN,
+    NO_WAY,
+    ON_THE_WAY,
+    POSTURE_REACHED,
+    beyond_limits,
+    posture_left,
+    why_left,
+)
+from irlx.pacing.posture_term import PostureTerm, posture_term
+from irlx.pacing.reconfigure import reconfigured, settled_konf
 from irlx.pacing.row_check import broken_bound
-from irlx.pacing.rows import MotionRows
+from irlx.pacing.rows import MotionRows, PathPart
+from irlx.pacing.slowdown.model import Model
 from irlx.pacing.snap import SAME_VALUE, snapped
 from irlx.pacing.switches import check_freeze, check_inside, check_joint_target, check_limit
-from irlx.pacing.walk import Walk, walk
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
 from irlx.robot.promises import PATH_ORIENTATION, PATH_POSITION
-from irlx.transform.criteria.criterion import Criterion
-from irlx.transform.criteria.least_motion import LeastMotion
-from irlx.transform.criteria.posture import Posture
 from irlx.transform.posture_search import nearest_posture
 from irlx.transform.qp.proxqp import ProxQpSolver
-from irlx.transform.step_bounds import StepLimiter
 from irlx.transform.tick import TickSolver
 
 Array = NDArray[np.float64]
-
-POSTURE_REACHED = 1e-6
-"""Difference (rad or m) of a joint at the end of a line to a posture that still counts as reached."""
 
 FARTHEST_TARGET = 1e9
 """Coordinate (m) beyond which a target is out of reach of any robot, and of squares in float64."""
@@ -57,7 +71,10 @@ FARTHEST_TARGET = 1e9
 
 @dataclass(frozen=True)
 class PacingSetup:
-    """The robot as a run finds it: model, own limits, weights (n,), start posture (n,), tick in s."""
+    """The robot as a run finds it: model, own limits, weights (n,), start posture (n,), tick in s.
+
+    A move may take `max_slow` times as long as programmed, and a tick.
+    """
 
     kinematics: Kinematics
     limits: JointLimits
@@ -65,6 +82,7 @@ class PacingSetup:
     start: Array
     dt: float
     modifiers: Sequence[DemandModifier] = ()
+    max_slow: float = inf
 
 
 class Pacer:
@@ -96,6 +114,8 @@ class Pacer:
         """
         if isinstance(block, MoveBlock):
             return self._move(block)
+        if isinstance(block, ReconfigureBlock):
+            return self._reconfigure(block)
         place = self._locate(block.origin)
         if isinstance(block, LimitSwitchBlock):
             self.warnings += check_limit(block, self._robot, self._setup.limits, self.q, place)
@@ -115,72 +135,101 @@ class Pacer:
         rows = (
             self._joint_line(block, in_force) if block.kind is MoveKind.PTP else self._line(block, in_force)
         )
+        return self._moved(rows, in_force)
+
+    def _moved(self, rows: MotionRows | None, in_force: LimitsInForce) -> MotionRows | None:
+        """The rows of a motion with its limits, the robot now standing at their end."""
         if rows is None:
             return None
         self.q = rows.q[-1]
         self.tick += len(rows)
         return replace(rows, limits=in_force.limits)
 
-    # ---- LIN
+    # ---- RECONFIGURATION
+
+    def _reconfigure(self, block: ReconfigureBlock) -> MotionRows | None:
+        place = self._locate(block.origin)
+        in_force = limits_in_force(self._setup.limits, self.options)
+        check_inside(self.q, self._robot, in_force.limits, place)
+        free = self.options.free_joints(self.q.size)
+        model = Model(self._setup.kinematics, in_force.limits, self._setup.weights, free)
+        konf = self._konf(block.target, in_force, place)
+        found = reconfigured(model, block, self.q, konf, self._setup.dt, self.tick + 1, place, self._qp)
+        left = found.flow.remaining
+        why = why_left(found.flow.end, left, found.held, self._robot)
+        self.warnings += posture_left(left, why, self._robot, place)
+        return self._moved(found.rows, in_force)
+
+    def _konf(self, target: JointTarget, in_force: LimitsInForce, place: Place) -> Array:
+        """Posture (n,) that RECONFIGURATION asks for; a warning where it lies outside the limits."""
+        konf = settled_konf(np.array(target.values), self.q, in_force.limits)
+        free = self.options.free_joints(self.q.size)
+        self.warnings += beyond_limits(konf, in_force.limits, free, self._robot, place)
+        return konf
+
+    # ---- LIN and CIRCLE
 
     def _line(self, block: MoveBlock, in_force: LimitsInForce) -> MotionRows | None:
         place = self._locate(block.origin)
         rotation, position = self._setup.kinematics.tool_pose(self.q)
-        posture, target = self._line_target(block, in_force, place)
-        plan = plan_line(block, target, rotation, position, self._setup.dt, place)
+        posture, posed = self._line_targets(block, in_force, place)
+        plan = plan_path(posed, rotation, position, self._setup.dt, place)
         if plan.ticks == 0:
-            self._warn_of_posture_left(self.q, posture, place)
+            self._warn_of_posture_left(self.q, posture, block, place)
             return None
         free = self.options.free_joints(self.q.size)
-        around = Surroundings(self._setup.kinematics, in_force.limits, free, in_force.asked_by)
-        clock = programmed_clock(plan.law, plan.ticks, self._setup.dt)
-        walked = walk(
-            self._solver,
-            StepLimiter(in_force.limits, self._setup.dt),
-            self._criterion_of(posture, plan.path.length),
-            free,
-            self.q,
-            demands(plan.path, clock, self.tick + 1, self._setup.modifiers),
-        )
-        if walked.halt is not None:
-            goal = goal_shortfall(around, plan.path.end_rotation, plan.path.end_position, self.q)
-            raise PacingError(explain_halt(walked.halt, around, plan.path, goal, place))
-        self._check_rows(walked.q, in_force.limits, place)
-        self._warn_of_posture_left(walked.q[-1], posture, place)
-        return self._line_rows(block, plan.path, walked)
+        model = Model(self._setup.kinematics, in_force.limits, self._setup.weights, free)
+        term = posture_term(model, self.q, plan.programmed, posture, self.options.cyclic_posture, self._qp)
+        dt, longest = self._setup.dt, self._setup.max_slow * plan.programmed.duration
 
-    def _line_target(
+        def ticks_of(duration: float) -> int:
+            if duration > longest + dt:
+                raise PacingError(slower_than_allowed(duration, plan.programmed.duration, longest, place))
+            return ticks_of_move(duration, dt, place)
+
+        motion = PathMotion(plan, self.q, term, dt, self.tick + 1, ticks_of, self._setup.modifiers)
+        paced = pace_path(motion, model, self._solver)
+        if isinstance(paced, Failure):
+            around = Surroundings(self._setup.kinematics, in_force.limits, free, in_force.asked_by)
+            goal = goal_shortfall(around, plan.path.end_rotation, plan.path.end_position, self.q)
+            raise PacingError(explain_failure(paced, around, plan, self.tick + 1, goal, place))
+        self._warn_of_posture_left(paced.q[-1], posture, block, place)
+        return self._line_rows(block, plan, term, paced)
+
+    def _line_targets(
         self, block: MoveBlock, in_force: LimitsInForce, place: Place
-    ) -> tuple[Array | None, PoseTarget]:
-        """Pose at which a line ends, and the posture to end in where the target is one."""
-        if isinstance(block.target, PoseTarget):
-            return None, block.target
-        posture = np.array(block.target.values)
-        check_joint_target(posture, self._robot, in_force.limits, place)
-        rotation, position = self._setup.kinematics.tool_pose(posture)
+    ) -> tuple[Array | None, MoveBlock]:
+        """The posture to end in where the target is one, and the block with poses for all its postures.
+
+        A CIRCLE with ANGLE does not end at its target: it is not drawn to the target's posture.
+        """
+        course, posture = block.course, None
+        if isinstance(block.target, JointTarget) and (course is None or course.angle is None):
+            posture = np.array(block.target.values)
+            check_joint_target(posture, self._robot, in_force.limits, place)
+        if course is not None:
+            course = replace(course, via=self._as_pose(course.via))
+        if block.reconfiguration is not None:
+            posture = self._konf(block.reconfiguration, in_force, place)
+        return posture, replace(block, target=self._as_pose(block.target), course=course)
+
+    def _as_pose(self, target: PoseTarget | JointTarget) -> PoseTarget:
+        """A target as the pose of the tool."""
+        if isinstance(target, PoseTarget):
+            return target
+        rotation, position = self._setup.kinematics.tool_pose(np.array(target.values))
         x, y, z, w = Rotation.from_matrix(rotation).as_quat()
-        return posture, PoseTarget(
+        return PoseTarget(
             (float(position[0]), float(position[1]), float(position[2])),
             (float(x), float(y), float(z), float(w)),
         )
 
-    def _criterion_of(self, posture: Array | None, length: float) -> Callable[[Demand], Criterion]:
-        """The one posture term in force: a target posture on the way, else cyclic return, else least motion.
-
-        Towards a target posture the reference runs from the present one with the path parameter, so
-        that it is reached together with the pose.
-        """
-        weights, start = self._setup.weights, self.q
-        if posture is not None:
-            way = posture - start
-            return lambda demand: Posture(weights, start + (demand.s / length) * way)
-        fixed: Criterion = LeastMotion(weights)
-        if self.options.cyclic_posture is not None:
-            fixed = Posture(weights, self.options.cyclic_posture)
-        return lambda demand: fixed
-
-    def _warn_of_posture_left(self, q: Array, posture: Array | None, place: Place) -> None:
+    def _warn_of_posture_left(self, q: Array, posture: Array | None, block: MoveBlock, place: Place) -> None:
         if posture is None:
+            return
+        if block.reconfiguration is not None:
+            why = NO_WAY if q is self.q else ON_THE_WAY
+            self.warnings += posture_left(posture - q, why, self._robot, place)
             return
         left = np.abs(posture - q)
         joint = int(np.argmax(left))
@@ -195,28 +244,37 @@ class Pacer:
         if broken is not None:
             raise PacingError(explain_broken_row(broken, self.tick + 1, self._robot, place))
 
-    def _line_rows(self, block: MoveBlock, path: Line, walked: Walk) -> MotionRows:
-        position_error, orientation_error, tool_position, tool_rotation = self._tool(walked.q, walked.demands)
+    def _line_rows(
+        self, block: MoveBlock, plan: PlannedPath, term: PostureTerm, paced: PacedPath
+    ) -> MotionRows:
+        position_error, orientation_error, tool_position, tool_rotation = self._tool(paced.q, paced.demands)
         if position_error.max() > PATH_POSITION or orientation_error.max() > PATH_ORIENTATION:
             raise ArithmeticError("a solved tick lies off the path: the inverse transform is at fault")
         return MotionRows(
             block,
             self.tick + 1,
-            _held(walked.q),
+            _held(paced.q),
             _held(tool_position),
             _held(tool_rotation),
             _held(position_error),
             _held(orientation_error),
-            np.vstack([walked.active, np.zeros_like(walked.active[-1:])]),
-            _held(np.array([demand.s for demand in walked.demands])),
-            path.length,
-            walked.iterations,
+            np.vstack([paced.active, np.zeros_like(paced.active[-1:])]),
+            _held(np.array([demand.s for demand in paced.demands])),
+            plan.path.length,
+            paced.iterations,
+            path=PathPart(
+                paced.demands,
+                term,
+                plan.programmed,
+                plan.path.is_pure_turn,
+                paced.planned,
+                paced.slowings,
+            ),
         )
 
     def _tool(self, q: Array, asked: Sequence[Demand]) -> tuple[Array, Array, Array, Array]:
         """Tool poses of rows and their distance (m) and angle (rad) from the demands."""
-        poses = [self._setup.kinematics.tool_pose(row) for row in q]
-        rotation, position = (np.array(part) for part in zip(*poses, strict=True))
+        rotation, position = self._setup.kinematics.tool_poses(q)
         wanted_position = np.array([demand.position for demand in asked])
         wanted_rotation = np.array([demand.rotation for demand in asked])
         apart = Rotation.from_matrix(np.swapaxes(wanted_rotation, 1, 2) @ rotation)
@@ -236,6 +294,10 @@ class Pacer:
         check_joint_target(end, self._robot, in_force.limits, place)
         names = self._robot.joint_names
         plan = plan_joint_line(self.q, end, block.law, in_force.limits, names, self._setup.dt, place)
+        if block.reconfiguration is not None:
+            why = JOINTS_GIVEN if isinstance(block.target, JointTarget) else ON_THE_WAY
+            left = np.array(block.reconfiguration.values) - end
+            self.warnings += posture_left(left, why, self._robot, place)
         if plan.ticks == 0:
             return None
         q = plan.postures(self._setup.dt)
@@ -271,6 +333,8 @@ class Pacer:
             raise PacingError(report("IRL522", place, distance=f"{farthest * 1000.0:.6g}", angle="0"))
         free = self.options.free_joints(self.q.size)
         drawn_to = self.options.cyclic_posture if self.options.cyclic_posture is not None else self.q
+        if block.reconfiguration is not None:
+            drawn_to = self._konf(block.reconfiguration, in_force, place)
         start = np.where(free, drawn_to, self.q)
         search = nearest_posture(
             self._setup.kinematics,

@@ -63,3 +63,44 @@ def _first(
     row, joint = (int(index) for index in np.argwhere(broken)[0])
     bound = upper[joint] if over[row, joint] else lower[joint]
     return BrokenBound(row, joint, kind, float(values[row, joint]), float(bound))
+
+
+@dataclass(frozen=True)
+class Excess:
+    """How far rows pass their bounds: position by rad or m (0: not at all), speed and acceleration as a
+    share of the bound (at most 1: kept); `first` is the first bound that is broken, None where none is."""
+
+    position: float
+    speed: float
+    acceleration: float
+    first: BrokenBound | None
+
+
+def excess_of(start: Array, rows: Array, limits: JointLimits, dt: float) -> Excess:
+    """Excess of rows (N, n) after rest at `start` (n,), their last one a hold, by differences.
+
+    A bound kept but for rounding (`broken_bound` finds nothing) counts as kept: its share is 1.
+    """
+    broken = broken_bound(start, rows, limits, dt)
+    if broken is None:
+        return Excess(0.0, 1.0, 1.0, None)
+    rest = np.vstack([start, start, rows])
+    speeds = np.diff(rest, axis=0) / dt
+    accelerations = np.diff(speeds, axis=0) / dt
+    slack = rounding_allowance(rest, dt)
+    out = np.maximum(rows - limits.position_upper, limits.position_lower - rows)
+    return Excess(
+        max(float(np.max(out)), 0.0),
+        _share(speeds, limits.speed_lower, limits.speed_upper, slack[0]),
+        _share(accelerations, limits.acceleration_lower, limits.acceleration_upper, slack[1]),
+        broken,
+    )
+
+
+def _share(values: Array, lower: Array, upper: Array, slack: float) -> float:
+    """Largest share of its bound that a value takes, over `slack`; infinite where one of 0 is passed."""
+    values = np.where(np.abs(values) <= slack, 0.0, values)
+    bound = np.where(values > 0.0, upper, -lower)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shares = np.abs(values) / bound
+    return float(np.max(np.where(np.isnan(shares), 0.0, shares)))

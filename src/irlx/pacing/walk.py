@@ -15,6 +15,12 @@ from irlx.transform.tick import TickProblem, TickSolution, TickSolver
 
 Array = NDArray[np.float64]
 
+_CONTINUATION = (-1.0, 4.0, -6.0, 4.0)
+"""Weights of the last four steps, the oldest first."""
+
+_CONTINUATION_AT = [np.roll(_CONTINUATION, k) for k in range(len(_CONTINUATION))]
+"""The same for a ring of steps in which the oldest one stands at place k."""
+
 
 @dataclass(frozen=True)
 class Halt:
@@ -53,6 +59,9 @@ def walk(
     for the joints that are not frozen.
     """
     q, speed = start, np.zeros_like(start)
+    joints = start.size
+    seeds = _Seeds(joints)
+    unheld = np.zeros(joints, dtype=np.int8)
     rows: list[Array] = []
     flags: list[NDArray[np.int8]] = []
     done: list[Demand] = []
@@ -61,19 +70,22 @@ def walk(
     for demand in demands:
         bounds = limiter.bounds(q, speed)
         target = solver.kinematics.target(demand.rotation, demand.position)
-        solution = solver.solve(TickProblem(target, q, bounds, criterion_of(demand), free))
+        problem = TickProblem(target, q, bounds, criterion_of(demand), free)
+        solution = solver.solve(problem, seeds.next())
         iterations += solution.iterations
         if not solution.solved:
             halt = Halt(demand, bounds, solution)
             break
         # q + (limit - q) may lie one bit beyond the limit.
-        reached = limiter.limits.into_positions(solution.q)
-        speed = (reached - q) / limiter.dt
+        reached = limiter.into_positions(solution.q)
+        step = reached - q
+        seeds.took(step)
+        speed = step / limiter.dt
         q = reached
         rows.append(q)
-        flags.append(active_flags(solution.active, bounds))
+        held = np.count_nonzero(solution.active) > 0
+        flags.append(active_flags(solution.active, bounds) if held else unheld)
         done.append(demand)
-    joints = start.size
     return Walk(
         np.array(rows).reshape(-1, joints),
         np.array(flags, dtype=np.int8).reshape(-1, joints),
@@ -81,6 +93,26 @@ def walk(
         iterations,
         halt,
     )
+
+
+class _Seeds:
+    """Continues the last steps of a walk as a cubic in time: where Newton's method begins a tick.
+
+    S_k = 4 S_(k-1) - 6 S_(k-2) + 4 S_(k-3) - S_(k-4); a walk begins at rest.
+    """
+
+    def __init__(self, joints: int) -> None:
+        self._last = np.zeros((len(_CONTINUATION), joints))
+        self._count = 0
+
+    def next(self) -> Array:
+        """Step (n,) that continues the last ones."""
+        return np.asarray(_CONTINUATION_AT[self._count % len(_CONTINUATION)].dot(self._last))
+
+    def took(self, step: Array) -> None:
+        """Note the step (n,) of a tick."""
+        self._last[self._count % len(_CONTINUATION)] = step
+        self._count += 1
 
 
 def active_flags(active: NDArray[np.int8], bounds: StepBounds) -> NDArray[np.int8]:

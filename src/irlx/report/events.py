@@ -1,4 +1,4 @@
-"""Events of a run: spans of ticks in which a limit held a joint back."""
+"""Events of a run: spans of ticks in which a limit held a joint back, or slowed the tool on its path."""
 
 from __future__ import annotations
 
@@ -7,6 +7,11 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
+from irlx.pacing.rows import MotionRows
+from irlx.pacing.slowdown.clock_bounds import Governor
+from irlx.pacing.slowing import Slowing
+from irlx.robot.limits import JointLimits
 
 SOURCES = ("position", "speed", "acceleration", "braking")
 """Names of the bound sources, in the order of their numbers in `active` flags."""
@@ -31,6 +36,77 @@ class LimitActive:
     def to_plain(self) -> dict[str, object]:
         """The event as JSON-able data."""
         return {"event": "limit active", **asdict(self)}
+
+
+@dataclass(frozen=True)
+class Slowed:
+    """The tool ran slower than programmed from `first_tick` to `last_tick`, for one joint's limit.
+
+    `line` of the move in the program; `way` of `length` (m, or rad where the tool only `turns`) where it was
+    slowest: `achieved` instead of `requested` (m/s or rad/s), because of the `kind` (speed or acceleration) limit
+    `bound` of `joint` ('' where no single joint decides); `lost` time, s.
+    """
+
+    line: int
+    first_tick: int
+    last_tick: int
+    first_time: float
+    last_time: float
+    way: float
+    length: float
+    turns: bool
+    requested: float
+    achieved: float
+    joint: str
+    kind: str
+    bound: float
+    lost: float
+
+    def to_plain(self) -> dict[str, object]:
+        """The event as JSON-able data."""
+        return {"event": "slowed", **asdict(self)}
+
+
+def slowed_events(
+    rows: MotionRows, limits: JointLimits, joint_names: Sequence[str], dt: float
+) -> tuple[Slowed, ...]:
+    """Events of the slowed stretches of one motion."""
+    if rows.path is None:
+        return ()
+    return tuple(
+        _slowed(slowing, rows, rows.path.is_turn, limits, joint_names, dt) for slowing in rows.path.slowings
+    )
+
+
+def _slowed(
+    slowing: Slowing,
+    rows: MotionRows,
+    turns: bool,
+    limits: JointLimits,
+    joint_names: Sequence[str],
+    dt: float,
+) -> Slowed:
+    first, last = rows.first_tick + slowing.first_row, rows.first_tick + slowing.last_row
+    known = slowing.joint >= 0 and slowing.governor is not Governor.PROGRAM
+    kind = slowing.governor.name.lower() if known else ""
+    # Of a limit that differs by direction the narrower side is told.
+    bound = float(min(abs(side[slowing.joint]) for side in limits.pair(kind))) if known else 0.0
+    return Slowed(
+        line=rows.block.origin.line,
+        first_tick=first,
+        last_tick=last,
+        first_time=first * dt,
+        last_time=last * dt,
+        way=slowing.s,
+        length=rows.length,
+        turns=turns,
+        requested=slowing.requested,
+        achieved=slowing.achieved,
+        joint=joint_names[slowing.joint] if known else "",
+        kind=kind,
+        bound=bound,
+        lost=slowing.lost,
+    )
 
 
 def limit_events(active: NDArray[np.int8], joint_names: Sequence[str], dt: float) -> tuple[LimitActive, ...]:

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from irlx.blocks import Block, MoveBlock
+from irlx.blocks import Block, MoveBlock, ReconfigureBlock
 from irlx.diagnostics import Diagnostic
 from irlx.pacing.rows import MotionRows
-from irlx.report.events import limit_events
+from irlx.report.events import Slowed, limit_events, slowed_events
 from irlx.report.run import Run
 from irlx.report.summary import LimitUse, Summary, closure, limit_uses
 from irlx.robot.limits import JointLimits
@@ -35,6 +35,8 @@ class _Segment(NamedTuple):
     limits: JointLimits
     path_error: tuple[float, float] = (0.0, 0.0)
     iterations: int = 0
+    slowed: tuple[Slowed, ...] = ()
+    planned: bool = False
 
 
 class Recording:
@@ -56,6 +58,11 @@ class Recording:
         """Time of the last row, s."""
         return (self._rows - 1) * self._header.dt
 
+    @property
+    def last_posture(self) -> Array:
+        """The last row of q, (n,)."""
+        return next(segment.q[-1] for segment in reversed(self._segments) if len(segment.q))
+
     def add(self, block: Block, tick: int, rows: MotionRows | None) -> None:
         """Add a block that began at `tick`, and the rows it became."""
         last = self._segments[-1]
@@ -64,6 +71,7 @@ class Recording:
             nothing = last.q[:0], last.block[:0], last.tool[:0], last.active[:0]
             self._segments.append(_Segment(record, *nothing, self._header.limits))
             return
+        header, limits = self._header, rows.limits or self._header.limits
         before = next(segment.tool[-1, 3:] for segment in reversed(self._segments) if len(segment.tool))
         self._segments.append(
             _Segment(
@@ -72,9 +80,11 @@ class Recording:
                 np.full(len(rows), block.id, dtype=np.int64),
                 _pose_rows(rows.tool_position, rows.tool_rotation, before),
                 rows.active,
-                rows.limits or self._header.limits,
+                limits,
                 (float(rows.path_position_error.max()), float(rows.path_orientation_error.max())),
                 rows.iterations,
+                slowed_events(rows, limits, header.joint_names, header.dt),
+                rows.path is not None and rows.path.planned,
             )
         )
         self._rows += len(rows)
@@ -105,21 +115,24 @@ class Recording:
         names = self._header.joint_names
         active = np.concatenate([segment.active for segment in self._segments])
         events = limit_events(active, names, self._header.dt)
+        slowed = tuple(event for segment in self._segments for event in segment.slowed)
         iterations = sum(segment.iterations for segment in self._segments)
         summary = Summary(
             program=self._header.program_name,
             complete=complete,
             duration=self.duration,
             samples=len(q),
-            moves=sum(isinstance(record.block, MoveBlock) for record in records),
+            moves=sum(isinstance(record.block, MoveBlock | ReconfigureBlock) for record in records),
             path_position_error=max(segment.path_error[0] for segment in self._segments),
             path_orientation_error=max(segment.path_error[1] for segment in self._segments),
             limit_use=self._limit_use(stream),
             active=events,
+            slowed=slowed,
+            planned=sum(segment.planned for segment in self._segments),
             closure=closure(q, tool, names, PATH_POSITION),
             iterations_per_tick=iterations / max(len(q) - 1, 1),
         )
-        return Run(stream, events, summary, diagnostics)
+        return Run(stream, (*events, *slowed), summary, diagnostics)
 
     def _columns(self) -> tuple[Array, NDArray[np.int64], Array]:
         """Rows of q (N, n), block (N,) and tool (N, 7)."""

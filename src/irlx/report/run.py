@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.diagnostics import Diagnostic, IrlxError
-from irlx.report.events import LimitActive
+from irlx.pacing.explanation import TickExplanation
+from irlx.report.events import LimitActive, Slowed
 from irlx.report.summary import Summary
 from irlx.streams.formats import write_stream
 from irlx.streams.joint_stream import JointStream
@@ -24,12 +25,14 @@ class Run:
     Arrays of N samples and n joints: `t` (N,) s; `q`, `qd`, `qdd` (N, n) rad | m and per s, s2, the
     rates being backward differences of the emitted q, from rest before tick 0; `tool` (N, 7) x y z in
     m and unit quaternion x y z w of the tool frame in the world; `block` (N,) id of the move.
+    `explanation` is that of the tick asked for with `explain_tick`, None where no motion has it.
     """
 
     stream: JointStream
-    events: tuple[LimitActive, ...]
+    events: tuple[LimitActive | Slowed, ...]
     summary: Summary
     diagnostics: tuple[Diagnostic, ...]
+    explanation: TickExplanation | None = None
 
     @property
     def t(self) -> Array:

@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.report.events import LimitActive
+from irlx.report.events import LimitActive, Slowed
 from irlx.robot.limits import JointLimits
 
 Array = NDArray[np.float64]
@@ -38,9 +38,11 @@ class Closure:
 class Summary:
     """Figures of a run: durations in s, path errors in m and rad.
 
-    `limit_use` holds, for each kind of limit the robot has, the joint that came nearest to its bound
-    (for positions: the bound on that side of the middle of its range). `closure` is None where the
-    tool does not end where it began.
+    `slowed` tells where the tool ran slower than programmed, `planned` how many moves were planned as a
+    whole because ordinary ticks would have broken a bound (their postures differ from the ordinary ones
+    from the start of the move). `limit_use` holds, for each kind of limit the robot has, the joint that
+    came nearest to its bound (for positions: the bound on that side of the middle of its range).
+    `closure` is None where the tool does not end where it began.
     """
 
     program: str
@@ -52,6 +54,8 @@ class Summary:
     path_orientation_error: float
     limit_use: tuple[LimitUse, ...]
     active: tuple[LimitActive, ...]
+    slowed: tuple[Slowed, ...]
+    planned: int
     closure: Closure | None
     iterations_per_tick: float
 
@@ -59,6 +63,7 @@ class Summary:
         """The summary as JSON-able data."""
         plain = asdict(self)
         plain["active"] = [event.to_plain() for event in self.active]
+        plain["slowed"] = [event.to_plain() for event in self.slowed]
         return plain
 
 

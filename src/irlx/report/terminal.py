@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import degrees
 
-from irlx.report.events import LimitActive
+from irlx.report.events import LimitActive, Slowed
 from irlx.report.summary import LimitUse, Summary
 from irlx.streams.verify import VerifyReport
 
@@ -30,6 +30,12 @@ def summary_text(summary: Summary, joint_units: Sequence[str], joint_names: Sequ
     lines += [_line("at a limit", words) for words in _active(summary.active)]
     if not summary.active:
         lines.append(_line("at a limit", "no joint was held by one"))
+    if summary.planned:
+        words = (
+            f"{summary.planned} of {summary.moves} moves as a whole: ordinary ticks would have broken a limit"
+        )
+        lines.append(_line("planned", words))
+    lines += [_line("slowed", words) for words in _slowed(summary.slowed, units)]
     if summary.closure is not None:
         difference = _value(summary.closure.difference, units[summary.closure.joint])
         words = f"the postures differ by {difference} at most ({summary.closure.joint})"
@@ -60,6 +66,32 @@ def _value(value: float, unit: str, per: str = "") -> str:
 def _use(use: LimitUse, units: dict[str, str]) -> str:
     value, bound = (_value(v, units[use.joint], _PER[use.kind]) for v in (use.value, use.bound))
     return f"{use.kind} {100.0 * use.share:.4g} %: {use.joint} {value} of {bound} at tick {use.tick}"
+
+
+def _slowed(events: Sequence[Slowed], units: dict[str, str]) -> list[str]:
+    """The slowest places, the costliest first, and what all of them cost."""
+    if not events:
+        return []
+    shown = sorted(events, key=lambda event: -event.lost)[:_MOST_SPANS]
+    lines = [_slowing(event, units) for event in sorted(shown, key=lambda event: event.first_tick)]
+    lost = sum(event.lost for event in events)
+    places = "1 place" if len(events) == 1 else f"{len(events)} places"
+    return [f"the path is kept; {lost:.3g} s longer than programmed, at {places}", *lines]
+
+
+def _slowing(event: Slowed, units: dict[str, str]) -> str:
+    unit, scale = ("deg", degrees(1.0)) if event.turns else ("mm", 1000.0)
+    requested, achieved = (f"{value * scale:.4g}" for value in (event.requested, event.achieved))
+    why = (
+        f": {event.joint} {event.kind} {_value(event.bound, units[event.joint], _PER[event.kind])}"
+        if event.joint
+        else ""
+    )
+    return (
+        f"line {event.line}, {event.first_time:.6g}-{event.last_time:.6g} s: "
+        f"{achieved} of {requested} {unit}/s "
+        f"at {event.way * scale:.4g} of {event.length * scale:.4g} {unit}{why}"
+    )
 
 
 def _active(events: Sequence[LimitActive]) -> list[str]:

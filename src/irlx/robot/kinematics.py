@@ -13,6 +13,7 @@ from irlx.robot.description import Inertial, Joint, JointKind, RobotDescription
 
 Array = NDArray[np.float64]
 
+_LOCAL = pin.ReferenceFrame.LOCAL
 _ALIGNED = {
     (JointKind.REVOLUTE, (1.0, 0.0, 0.0)): pin.JointModelRX,
     (JointKind.REVOLUTE, (0.0, 1.0, 0.0)): pin.JointModelRY,
@@ -103,6 +104,16 @@ class Kinematics:
         pose = pin.updateFramePlacement(self.model, self.data, self._tip_frame)
         return pose.rotation.copy(), pose.translation.copy()
 
+    def tool_poses(self, q: Array) -> tuple[Array, Array]:
+        """Rotations (N, 3, 3) and positions (N, 3) m of the tool frame at the postures q (N, n)."""
+        rotation, position = np.empty((len(q), 3, 3)), np.empty((len(q), 3))
+        model, data, tip = self.model, self.data, self._tip_frame
+        for k, row in enumerate(q):
+            pin.forwardKinematics(model, data, row)
+            pose = pin.updateFramePlacement(model, data, tip)
+            rotation[k], position[k] = pose.rotation, pose.translation
+        return rotation, position
+
     def difference(self, q: Array, target: pin.SE3) -> tuple[Array, Array]:
         """Twist that leads the tool from its pose at q to `target`, and the Jacobian of the tool.
 
@@ -112,7 +123,7 @@ class Kinematics:
         pin.computeJointJacobians(self.model, self.data, q)
         pose = pin.updateFramePlacement(self.model, self.data, self._tip_frame)
         twist = pin.log6(pose.actInv(target)).vector
-        jacobian = pin.getFrameJacobian(self.model, self.data, self._tip_frame, pin.ReferenceFrame.LOCAL)
+        jacobian = pin.getFrameJacobian(self.model, self.data, self._tip_frame, _LOCAL)
         return twist, jacobian
 
     def difference_derivative(self, q: Array, target: pin.SE3) -> tuple[Array, Array]:

@@ -35,6 +35,10 @@ class JointLimits:
         """Same limits with the pair of `kind` ('position', 'speed', 'acceleration') replaced."""
         return replace(self, **{f"{kind}_lower": lower, f"{kind}_upper": upper})
 
+    def of(self, joints: NDArray[np.bool_]) -> JointLimits:
+        """Limits of some of the joints, chosen by a mask (n,)."""
+        return JointLimits(**{name: getattr(self, name)[joints] for name in self.__dataclass_fields__})
+
     def into_positions(self, q: Array) -> Array:
         """Joint values (..., n) moved onto the position limit they pass; for what rounding may have left."""
         return np.clip(q, self.position_lower, self.position_upper)

@@ -11,7 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg.lapack import dposv
 
+from irlx.transform.precision import QP_EXCESS
 from irlx.transform.qp.interval import IntervalSolver
 from irlx.transform.qp.solver import QpSolver
 
@@ -42,13 +44,23 @@ class Step:
     active: NDArray[np.int8]
 
 
+def solve_gram(gram: Array, right: Array) -> Array:
+    """k (m,) of G k = right, G = J H^-1 J' of shape (m, m), by Cholesky factors.
+
+    Where they do not exist to rounding, LU factors are tried; raises numpy.linalg.LinAlgError where
+    these say that J has lost its rank.
+    """
+    _, k, failed = dposv(gram, right)
+    return np.asarray(np.linalg.solve(gram, right) if failed else k)
+
+
 def free_step(problem: StepProblem) -> Array:
     """Minimiser without bounds: d = H^-1 (J' k - g) with J H^-1 J' k = e + J H^-1 g.
 
     Raises numpy.linalg.LinAlgError where J has lost its rank.
     """
     scaled = problem.jacobian / problem.hessian
-    k = np.linalg.solve(scaled @ problem.jacobian.T, problem.twist + scaled @ problem.gradient)
+    k = solve_gram(scaled @ problem.jacobian.T, problem.twist + scaled @ problem.gradient)
     return np.asarray(scaled.T @ k - problem.gradient / problem.hessian)
 
 
@@ -58,7 +70,7 @@ def path_step(problem: StepProblem) -> Array:
     Raises numpy.linalg.LinAlgError where J has lost its rank.
     """
     scaled = problem.jacobian / problem.hessian
-    return np.asarray(scaled.T @ np.linalg.solve(scaled @ problem.jacobian.T, problem.twist))
+    return np.asarray(scaled.T @ solve_gram(scaled @ problem.jacobian.T, problem.twist))
 
 
 def within(d: Array, lower: Array, upper: Array) -> bool:
@@ -70,6 +82,8 @@ def bounded_step(problem: StepProblem, d_free: Array, solver: QpSolver) -> Step 
     """Minimiser with bounds, given the one without; None where no step keeps path and bounds.
 
     In y = L^-T z, L L' = N' H N, the problem is min 1/2 |z|^2, lower - d_p <= N L^-T z <= upper - d_p.
+    Raises ArithmeticError where the solver's answer breaks the bounds: clipping it into them would hide
+    that the step no longer keeps the path.
     """
     lower, upper = problem.lower - d_free, problem.upper - d_free
     rows = null_space_rows(problem)
@@ -79,7 +93,11 @@ def bounded_step(problem: StepProblem, d_free: Array, solver: QpSolver) -> Step 
     solution = (IntervalSolver() if one_unknown else solver).solve(rows, lower, upper)
     if solution.z is None:
         return None
-    d = d_free + rows @ solution.z
+    moved = rows @ solution.z
+    excess = float(np.max(np.maximum(moved - upper, lower - moved)))
+    if not excess <= QP_EXCESS * max(1.0, float(np.max(np.abs(rows))), float(np.max(np.abs(moved)))):
+        raise ArithmeticError(f"a QP step lies {excess:.3g} outside its bounds: its solver is at fault")
+    d = d_free + moved
     # Joints held at a bound stand on it to the last bit, whatever the products above rounded to.
     d = np.where(solution.active > 0, problem.upper, np.where(solution.active < 0, problem.lower, d))
     return Step(d, solution.active)

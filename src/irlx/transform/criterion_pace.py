@@ -15,6 +15,9 @@ from irlx.transform.compact import StepProblem, path_step, within
 
 Array = NDArray[np.float64]
 
+STRAIGHT = 1e-3
+"""A step no longer than this part of the one before needs no other share than 1."""
+
 _PATH_NEARLY_MET = 1e-3
 _LEAST_SHARE = 0.05
 _LARGEST_SHARE = 2.0
@@ -34,25 +37,38 @@ class CriterionPace:
         With n the null-space part that is asked for and s the one taken before, the share is
         s'Hs / s'H(n_before - n), which is 1 where the path is straight.
         """
-        if float(np.max(np.abs(problem.twist))) > _PATH_NEARLY_MET:
-            self._asked = self._taken = None
-            return d
-        share = self._share(problem.hessian, d)
+        share = self.share(problem.twist, problem.hessian, d)
         taken = d
-        if abs(share - 1.0) > _NO_DIFFERENCE:
+        if share != 1.0:
             along_path = path_step(problem)
             taken = along_path + share * (d - along_path)
             # The shortest way onto the path may lead out of the bounds; the QP's step never does.
             if not within(taken, problem.lower, problem.upper):
                 taken = d
-        self._asked, self._taken = d, taken
+        self.took(problem.twist, d, taken)
         return taken
 
-    def _share(self, hessian: Array, d: Array) -> float:
-        if self._asked is None or self._taken is None or self._taken.shape != d.shape:
+    def share(self, twist: Array, hessian: Array, d: Array) -> float:
+        """Share of the null-space part of `d` (n,) to take; exactly 1 where all of it is right.
+
+        `twist` (6,) is what is left to the pose before the step, `hessian` the diagonal of H (n,).
+        """
+        if self._asked is None or self._taken is None or not _nearly_met(twist):
             return 1.0
-        length = float(self._taken @ (hessian * self._taken))
-        bend = float(self._taken @ (hessian * (self._asked - d)))
+        if self._taken.shape != d.shape:
+            return 1.0
+        weighted = hessian * self._taken
+        length = float(self._taken.dot(weighted))
+        bend = float(weighted.dot(self._asked - d))
         if length <= 0.0 or bend <= 0.0:
             return 1.0
-        return min(max(length / bend, _LEAST_SHARE), _LARGEST_SHARE)
+        share = min(max(length / bend, _LEAST_SHARE), _LARGEST_SHARE)
+        return share if abs(share - 1.0) > _NO_DIFFERENCE else 1.0
+
+    def took(self, twist: Array, asked: Array, taken: Array) -> None:
+        """Remember a step as it was asked for and as it was taken, each (n,)."""
+        self._asked, self._taken = (asked, taken) if _nearly_met(twist) else (None, None)
+
+
+def _nearly_met(twist: Array) -> bool:
+    return float(np.max(np.abs(twist))) <= _PATH_NEARLY_MET

@@ -7,7 +7,16 @@ ORIENTATION_TOLERANCE = 1e-7
 """Pose error before the last Newton step of a tick, rad."""
 
 SETTLED_STEP = 1e-9
-"""Largest joint step (rad or m) of the last Newton iteration: the criterion has settled."""
+"""Length (rad and m) of a Newton step from which on a tick may be settled."""
+
+SETTLED_ERROR = 1e-13
+"""What a settled tick leaves of the criterion's minimum (rad or m), by the shrinking of its steps."""
+
+ROUNDING_STEP = 1e-14
+"""Length (rad and m) of a Newton step that nothing but rounding asks for."""
+
+MOST_CALM_STEPS = 6
+"""Newton steps within `SETTLED_STEP` after which a tick is settled whatever the estimate says."""
 
 MAX_ITERATIONS = 30
 """Newton steps of a tick before it counts as impossible."""
@@ -24,8 +33,8 @@ BOUND_RESERVE = 1e-6
 EMPTY_INTERVAL = 1e-12
 """A lower bound above the upper one by no more than this (rad or m) is rounding, not a conflict."""
 
-FINAL_CLIP = 1e-9
-"""A solution outside its bounds by more than this (rad or m) is an error of the solver."""
+QP_EXCESS = 1e-9
+"""A QP solver's step outside its bounds by more than this (rad or m) is an error of the solver."""
 
 AT_BOUND = 1e-6
 """A joint of an unsolved tick stands on a bound when it is this near to it (rad or m)."""

@@ -2,32 +2,35 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
+from math import sqrt
+from typing import NamedTuple
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
+from scipy.linalg.lapack import dposv
 
 from irlx.robot.kinematics import Kinematics
 from irlx.transform.compact import Step, StepProblem, bounded_step, free_step, within
 from irlx.transform.criteria.criterion import Criterion
-from irlx.transform.criterion_pace import CriterionPace
+from irlx.transform.criterion_pace import STRAIGHT, CriterionPace
 from irlx.transform.nearest import Nearest, damped_step, nearest_in_bounds, scaled_singular_values
 from irlx.transform.precision import (
     AT_BOUND,
-    FINAL_CLIP,
     MAX_ITERATIONS,
     MAX_NEWTON_STEP,
     ORIENTATION_TOLERANCE,
     POSITION_TOLERANCE,
-    SETTLED_STEP,
     SINGULAR_RATIO,
 )
 from irlx.transform.qp.solver import QpSolver
+from irlx.transform.settling import Settling
 from irlx.transform.step_bounds import StepBounds
 
 Array = NDArray[np.float64]
+
+_SURELY_MET = min(POSITION_TOLERANCE, ORIENTATION_TOLERANCE) ** 2
 
 
 class TickStatus(Enum):
@@ -39,8 +42,7 @@ class TickStatus(Enum):
     NOT_CONVERGED = "the pose is not met"
 
 
-@dataclass(frozen=True)
-class TickProblem:
+class TickProblem(NamedTuple):
     """All that one tick depends on.
 
     `target`: demanded tool pose in the world; `q` (n,): posture at the start of the tick; `bounds`
@@ -54,8 +56,7 @@ class TickProblem:
     free: NDArray[np.bool_]
 
 
-@dataclass(frozen=True)
-class TickSolution:
+class TickSolution(NamedTuple):
     """Posture q (n,) at the end of a tick, and how it was found.
 
     `active` is +1 / -1 for joints held at the upper / lower bound of their step. `twist` (6,) is
@@ -84,16 +85,24 @@ class TickSolver:
         self.reach = kinematics.description.reach
         self._qp = qp
 
-    def solve(self, problem: TickProblem) -> TickSolution:
+    def solve(self, problem: TickProblem, seed: Array | None = None) -> TickSolution:
         """Find the posture on the demanded pose that makes the criterion smallest within the bounds.
 
-        A tick is solved once a Newton step starts from a pose error within tolerance and moves no
-        joint by more than `SETTLED_STEP`: that last step squares what was left.
+        A tick is solved once a Newton step starts from a pose error within tolerance and leaves less
+        than `SETTLED_ERROR` of the criterion's minimum: that last step squares what was left of the pose.
+        `seed` (n,) is a guess of the whole step; it saves Newton steps and decides nothing.
         """
+        start = np.zeros(problem.q.size) if seed is None else seed
+        found = self._undisturbed(problem, start)
+        if isinstance(found, TickSolution):
+            return found
         if problem.bounds.conflicts.size:
             nothing = np.zeros(problem.q.size, dtype=np.int8)
             return TickSolution(TickStatus.BOUNDS_CONFLICT, problem.q, nothing, np.zeros(6), 0)
-        first = self._newton(problem, np.zeros(problem.q.size))
+        first = self._newton(problem, found)
+        if not isinstance(first, TickSolution) and seed is not None:
+            # A seed must not decide whether there is a step.
+            first = self._newton(problem, np.zeros(problem.q.size))
         if isinstance(first, TickSolution):
             return first
         # Bounds can close the way that the first linear step sees and leave another one open.
@@ -104,24 +113,77 @@ class TickSolver:
                 return second
         return self._unsolved(problem, nearest, first)
 
+    def _undisturbed(self, problem: TickProblem, whole: Array) -> TickSolution | Array:
+        """Newton steps from `whole` (n,) for as long as no bound and no bad posture stands against them.
+
+        The same steps as those of `_newton`, with little more than the arithmetic of their closed form:
+        this is what ordinary ticks consist of. Frozen joints take part with an inverse Hessian and a pull
+        of zero, which gives them a step of exactly zero. Returns the iterate to go on from with all
+        precautions, where there is something to be cautious of.
+        """
+        target, q, bounds, criterion, free = problem
+        joints = q.size
+        inverse = criterion.inverse_hessian()
+        some_frozen = np.count_nonzero(free) < joints
+        if some_frozen:
+            inverse = inverse * free
+        settling, pace = Settling(), CriterionPace()
+        for iteration in range(1, self._max_iterations + 1):
+            twist, jacobian = self.kinematics.difference(q + whole, target)
+            pull = criterion.pull(q, whole)
+            if some_frozen:
+                pull = pull * free
+            scaled = jacobian * inverse
+            gram = scaled.dot(jacobian.T)
+            _, k, failed = dposv(gram, twist - jacobian.dot(pull))
+            d = pull + k.dot(scaled)
+            size = sqrt(d.dot(d))
+            if failed or not size <= MAX_NEWTON_STEP:
+                return whole
+            before = settling.before
+            done = settling.after(size, sqrt(pull.dot(pull)), _met(twist))
+            taken = d
+            # Steps that shrink this fast find the path straight; the last step is a full one.
+            if not done and size > STRAIGHT * before:
+                share = pace.share(twist, criterion.hessian(), d)
+                if share != 1.0:
+                    along_path = dposv(gram, twist)[1].dot(scaled)
+                    taken = along_path + share * (d - along_path)
+                pace.took(twist, d, taken)
+            further = whole + taken
+            inside = np.count_nonzero(further >= bounds.lower) + np.count_nonzero(further <= bounds.upper)
+            if inside < 2 * joints:
+                return whole
+            whole = further
+            if done:
+                active = np.zeros(joints, dtype=np.int8)
+                return TickSolution(TickStatus.SOLVED, q + whole, active, twist, iteration)
+        return whole
+
     def _newton(self, problem: TickProblem, whole: Array) -> TickSolution | TickStatus:
         """Iterate from `whole` (step since the start of the tick); the status says why it failed."""
-        bounds = problem.bounds
-        pace = CriterionPace()
+        lower, upper, free = problem.bounds.lower, problem.bounds.upper, problem.free
+        # An iterate inside the bounds has steps that stay inside; frozen joints have no part in them.
+        whole = np.where(free, np.minimum(np.maximum(whole, lower), upper), 0.0)
+        settling, pace = Settling(), CriterionPace()
         for iteration in range(1, self._max_iterations + 1):
             step_problem, d_free = self.newton_problem(problem, whole)
             step = self._step(step_problem, d_free)
             if step is None:
                 return TickStatus.NO_STEP
-            d = pace.shape(step_problem, step.d)
+            pull = step_problem.gradient / step_problem.hessian
+            done = settling.after(_length(step.d), _length(pull), _met(step_problem.twist))
+            done = done or (iteration == self._max_iterations and settling.calm > 0)
+            d = step.d if done else pace.shape(step_problem, step.d)
             d = d * min(1.0, MAX_NEWTON_STEP / max(float(np.max(np.abs(d), initial=0.0)), 1e-300))
             whole = whole.copy()
-            whole[problem.free] += d
-            clipped = np.clip(whole, bounds.lower, bounds.upper)
-            moved = float(np.max(np.abs(d), initial=0.0))
-            if moved <= SETTLED_STEP and _met(step_problem.twist):
-                return self._finish(problem, whole, clipped, step, step_problem.twist, iteration)
-            whole = np.where(problem.free, clipped, 0.0)
+            whole[free] += d
+            whole = np.where(free, np.minimum(np.maximum(whole, lower), upper), 0.0)
+            if done:
+                active = np.zeros(problem.q.size, dtype=np.int8)
+                active[free] = step.active
+                q = np.where(free, problem.q + whole, problem.q)
+                return TickSolution(TickStatus.SOLVED, q, active, step_problem.twist, iteration)
         return TickStatus.NOT_CONVERGED
 
     def newton_problem(self, problem: TickProblem, whole: Array) -> tuple[StepProblem, Array]:
@@ -154,16 +216,6 @@ class TickSolver:
             return Step(d_free, np.zeros(d_free.size, dtype=np.int8))
         return bounded_step(problem, d_free, self._qp)
 
-    def _finish(
-        self, problem: TickProblem, whole: Array, clipped: Array, step: Step, twist: Array, iterations: int
-    ) -> TickSolution:
-        if float(np.max(np.abs(whole - clipped)[problem.free], initial=0.0)) > FINAL_CLIP:
-            raise ArithmeticError("a converged tick left its bounds: the QP solver is at fault")
-        active = np.zeros(problem.q.size, dtype=np.int8)
-        active[problem.free] = step.active
-        q = np.where(problem.free, problem.q + clipped, problem.q)
-        return TickSolution(TickStatus.SOLVED, q, active, twist, iterations)
-
     def _nearest(self, problem: TickProblem) -> Nearest:
         lower, upper = problem.q + problem.bounds.lower, problem.q + problem.bounds.upper
         return nearest_in_bounds(self.kinematics, problem.target, problem.q, lower, upper, problem.free)
@@ -176,8 +228,12 @@ class TickSolver:
         return TickSolution(status, nearest.q, active, nearest.twist, self._max_iterations)
 
 
+def _length(d: Array) -> float:
+    return sqrt(d.dot(d))
+
+
 def _met(twist: Array) -> bool:
-    return bool(
-        np.sqrt(twist[:3] @ twist[:3]) <= POSITION_TOLERANCE
-        and np.sqrt(twist[3:] @ twist[3:]) <= ORIENTATION_TOLERANCE
-    )
+    # Both parts are shorter than the whole.
+    if twist.dot(twist) <= _SURELY_MET:
+        return True
+    return _length(twist[:3]) <= POSITION_TOLERANCE and _length(twist[3:]) <= ORIENTATION_TOLERANCE

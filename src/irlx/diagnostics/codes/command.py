@@ -8,7 +8,7 @@ COMMAND = (
     error("IRL003", "cannot write {path}: {cause}", "name another file with -o"),
     error("IRL004", "-o {path}: no format has the ending '{ending}'; known: {known}"),
     error("IRL005", "-o {path} would overwrite an input of this run", "name another file"),
-    error("IRL006", "--tick {value}: {cause}", "give milliseconds, for example --tick 10"),
+    error("IRL006", "{option} {value}: {cause}"),
     error("IRL007", "{path} is a folder, not a file"),
     error("IRL008", "{name} is a MODULE, which does not run by itself", "run a PROGRAM that imports from it"),
     error(

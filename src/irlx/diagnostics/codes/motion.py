@@ -6,7 +6,7 @@ MOTION: tuple[Code, ...] = (
     error("IRL401", "PATH does not go with {kind}", "write MOVE LIN PATH or MOVE SPLINE PATH"),
     error("IRL402", "SPLINE needs PATH", "write MOVE SPLINE PATH (p1, p2, p3)"),
     error("IRL403", "CIRCLE needs pairs of via point and end point, found {count} target(s)"),
-    error("IRL404", "ANGLE does not go with {kind}", "ANGLE is the turn of a MOVE CIRCLE"),
+    error("IRL404", "{param} does not go with {kind}", "it belongs to a MOVE CIRCLE"),
     error(
         "IRL405",
         "{targets} target(s), but {postures} posture(s) after RECONFIGURATION",

@@ -31,6 +31,17 @@ PACING = (
         "the line ends at the target's pose, but {joint} is {difference} away from the target's posture",
         "limits, frozen joints or the way there held it; MOVE PTP reaches a posture exactly",
     ),
+    warning(
+        "IRL349",
+        "the posture of RECONFIGURATION is not reached, {left} are left: {why}",
+        "a posture with the same tool pose, on the same side of the arm, inside the limits can be reached",
+    ),
+    warning(
+        "IRL350",
+        "RECONFIGURATION asks for {joint} at {value}, outside its limits {lower} to {upper}; it is led to the "
+        "nearest posture inside",
+        "choose a value inside the limits, or end the JOINTLIMIT before",
+    ),
     error(
         "IRL421",
         "TIME {asked} s is shorter than the {least} s that {governor} allow",
@@ -55,6 +66,22 @@ PACING = (
         "IRL426",
         "PTP has to move {joint}, whose speed or acceleration limit is 0",
         "widen the limit, or choose a target that leaves the joint where it is",
+    ),
+    error(
+        "IRL427",
+        "{points} of the circle are {distance} mm apart: three different points make a circle",
+        "a move starts where the last one ended; a full circle takes ANGLE := 360 and two other points",
+    ),
+    error(
+        "IRL428",
+        "start, via and end point lie on a line, {height} mm from it at most: they make no circle",
+        "move the via point off the line, or use MOVE LIN",
+    ),
+    error(
+        "IRL429",
+        "the tool is to turn through the via orientation, but ANGLE {angle} deg does not take it past the "
+        "via point at {via} deg",
+        "give a larger ANGLE, or leave out CIRC_ORI",
     ),
     error("IRL424", "the target puts {joint} at {value}, outside its limits {lower} to {upper}"),
 )

@@ -17,10 +17,9 @@ RUN = (
     error("IRL506", "{function} has no value at {value}"),
     error(
         "IRL520",
-        "the tool cannot follow this move beyond {way} of {length} (tick {tick}): {held}; "
+        "the tool cannot follow this move beyond {way} of {length} (tick {tick}) at any speed: {held}; "
         "smallest singular value {sigma}; {missing}",
-        "widen the limit, or start the move from another posture; where a speed or acceleration limit holds "
-        "it and the target can be reached, less SPEED helps",
+        "widen the limit, or start the move from another posture (RECONFIGURATION before it)",
     ),
     error(
         "IRL521",
@@ -37,7 +36,19 @@ RUN = (
     error(
         "IRL523",
         "{joint} would pass its {kind} limit {bound} with {value} at tick {tick}",
-        "give the move less speed or acceleration",
+        "slowing down does not help here: start the move from another posture, or widen the limit",
+    ),
+    error(
+        "IRL524",
+        "the tool would have to stand still at {way} of {length}: no slower clock gets {bound} over this place; "
+        "smallest singular value {sigma}",
+        "widen the limit, or start the move from another posture (RECONFIGURATION before it)",
+    ),
+    error(
+        "IRL525",
+        "the joints' limits make this move take {duration} s instead of {programmed} s, {factor} times as long; "
+        "{allowed} times is allowed",
+        "widen the limits, start from another posture, or allow more (--max-slow)",
     ),
     error(
         "IRL590",

@@ -14,6 +14,7 @@ END = 999
 
 BLOCK_CODES = {
     "MoveBlock": 300,
+    "ReconfigureBlock": 310,
     "HaltBlock": 390,
     "LimitSwitchBlock": 410,
     "FreezeBlock": 420,

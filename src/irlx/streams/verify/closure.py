@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from irlx.blocks import CyclicBlock, MoveBlock, PoseTarget
+from irlx.blocks import Block, CyclicBlock, MoveBlock, PoseTarget, ReconfigureBlock
 from irlx.robot.promises import CLOSURE, PATH_ORIENTATION, PATH_POSITION
 from irlx.streams.verify.evidence import Evidence
 from irlx.streams.verify.moves import MoveRows
@@ -15,42 +15,56 @@ ACTIVE = 1e-9
 """A limit that is this near, relative to max(1, |value|), may have kept the posture from closing."""
 
 
+_LED_AWAY = "a limit was active, or a RECONFIGURATION led away from the posture"
+
+
 def check_closure(evidence: Evidence) -> Check:
     """Posture difference at every return to the pose of CYCLICSTART, by moves to a pose.
 
-    A return whose end was governed by a limit is reported, not judged.
+    A return whose end was governed by a limit is reported, not judged; so is one after a RECONFIGURATION,
+    which may have led to another branch of postures.
     """
     tally = evidence.tally("cyclic closure", "rad|m")
     returns = _returns(evidence)
     free = 0
-    for move, start_row in returns:
+    for move, start_row, led_away in returns:
         q = evidence.stream.q
         difference = np.abs(q[move.last] - q[start_row])[None]
-        judged = not _limit_active(evidence, move)
+        judged = not (led_away or _limit_active(evidence, move))
         free += judged
         tally.add(np.array([move.last]), difference, CLOSURE, judged & ~(difference <= CLOSURE))
     if free < len(returns):
-        tally.detail = f"{len(returns) - free} of {len(returns)} returns not judged: a limit was active"
+        tally.detail = f"{len(returns) - free} of {len(returns)} returns not judged: {_LED_AWAY}"
     elif not returns:
         tally.detail = "no move under the cyclic option returned to its start pose"
     return tally.check()
 
 
-def _returns(evidence: Evidence) -> list[tuple[MoveRows, int]]:
-    """Finished moves to a pose that end at the pose of CYCLICSTART, with the row of that start."""
+def _returns(evidence: Evidence) -> list[tuple[MoveRows, int, bool]]:
+    """Finished moves to a pose that end at the pose of CYCLICSTART, the row of that start, and whether the
+    posture was reconfigured since. Moves WITH RECONFIGURATION are none: the cyclic option is off for them."""
     moves = {move.block.id: move for move in evidence.moves}
-    found: list[tuple[MoveRows, int]] = []
+    found: list[tuple[MoveRows, int, bool]] = []
     start: int | None = None
+    led_away = False
     for record in evidence.stream.records:
         if isinstance(record.block, CyclicBlock):
-            start = record.tick if record.block.active else None
+            start, led_away = record.tick if record.block.active else None, False
+        if _reconfigures(record.block):
+            led_away = True
+            continue
         if start is None or not isinstance(record.block, MoveBlock):
             continue
         move = moves[record.block.id]
         to_pose = isinstance(record.block.target, PoseTarget)
         if to_pose and move.finished and move.last > move.start and _same_pose(evidence, move.last, start):
-            found.append((move, start))
+            found.append((move, start, led_away))
     return found
+
+
+def _reconfigures(block: Block) -> bool:
+    clause = block.reconfiguration if isinstance(block, MoveBlock) else None
+    return clause is not None or isinstance(block, ReconfigureBlock)
 
 
 def _same_pose(evidence: Evidence, first: int, second: int) -> bool:

@@ -1,4 +1,4 @@
-"""Checks of what the moves do: straight paths, goals reached, the recorded tool pose."""
+"""Checks of what the moves do: straight and round paths, goals reached, the recorded tool pose."""
 
 from __future__ import annotations
 
@@ -6,9 +6,12 @@ import numpy as np
 
 from irlx.blocks import JointTarget, MoveKind
 from irlx.robot.promises import PATH_ORIENTATION, PATH_POSITION
+from irlx.streams.joint_stream import Floats
+from irlx.streams.verify.arcs import arc_deviation
 from irlx.streams.verify.evidence import Evidence
 from irlx.streams.verify.moves import MoveRows
-from irlx.streams.verify.paths import joint_line_deviation, line_deviation
+from irlx.streams.verify.paths import PathDeviation, joint_line_deviation, line_deviation
+from irlx.streams.verify.reconfigurations import add_reconfigurations
 from irlx.streams.verify.report import Check
 from irlx.streams.verify.rotations import angle_between, from_quaternion
 from irlx.streams.verify.tally import Tally
@@ -65,30 +68,58 @@ def check_goals(evidence: Evidence) -> list[Check]:
 
 
 def check_paths(evidence: Evidence) -> list[Check]:
-    """Every row of a LIN move lies on its path, and the path is never run backwards."""
+    """Every row of a LIN or CIRCLE lies on its path, and the path is never run backwards; a
+    RECONFIGURATION stays on the pose it begins at."""
     tallies = (
         evidence.tally("path position", "m"),
         evidence.tally("path orientation", "rad"),
         evidence.tally("path progress", "m|rad"),
     )
     skipped = sum(not _add_path(evidence, move, tallies) for move in evidence.moves)
+    add_reconfigurations(evidence, tallies[0], tallies[1])
     return [_with_skipped(tally, skipped) for tally in tallies]
 
 
 def _add_path(evidence: Evidence, move: MoveRows, tallies: tuple[Tally, Tally, Tally]) -> bool:
-    """Add the rows of a LIN move; False where its target cannot be placed."""
-    if move.block.kind is not MoveKind.LIN or move.last == move.start:
+    """Add the rows of a LIN or CIRCLE; False where its targets cannot be placed."""
+    if move.block.kind is MoveKind.PTP or move.last == move.start:
         return True
     goal = evidence.goal(move)
     if goal is None:
         return False
     positions, rotations = evidence.poses
     part = slice(move.start + 1, move.last + 1)
-    found = line_deviation(evidence.pose(move.start), goal, positions[part], rotations[part])
+    rows = positions[part], rotations[part]
+    if move.block.course is None:
+        found = line_deviation(evidence.pose(move.start), goal, *rows)
+    else:
+        via = evidence.target_pose(move.block.course.via, move)
+        if via is None:
+            return False
+        found = _arc_deviation(evidence, move, (via[1], goal[1]), rows)
     tallies[0].add(move.rows, found.position, PATH_POSITION)
     tallies[1].add(move.rows, found.orientation, PATH_ORIENTATION)
     tallies[2].add(move.rows, np.concatenate(([0.0], found.along[:-1])) - found.along, BACKWARDS)
+    if move.finished:
+        # A full circle ends where it began: its goal does not tell whether it was run.
+        missing = np.array([found.length - found.along[-1]])
+        tallies[2].add(np.array([move.last]), missing, PATH_POSITION)
     return True
+
+
+def _arc_deviation(
+    evidence: Evidence, move: MoveRows, rotations: tuple[Floats, Floats], rows: tuple[Floats, Floats]
+) -> PathDeviation:
+    """Deviation of the rows of a CIRCLE, rotations at via and end; infinite where its points make none."""
+    course, shape = move.block.course, evidence.arc(move)
+    if shape is None or course is None:
+        endless = np.full(len(rows[0]), np.inf)
+        return PathDeviation(endless, endless, np.zeros(len(rows[0])), np.inf)
+    law = move.block.law
+    speed = min(law.speed, float(np.sqrt(law.acc / shape.flatness)))
+    most_step = speed * shape.flatness * evidence.stream.header.tick_ns * 1e-9
+    start = evidence.pose(move.start)[1]
+    return arc_deviation(shape, course, (start, *rotations), rows, most_step)
 
 
 def _with_skipped(tally: Tally, skipped: int) -> Check:

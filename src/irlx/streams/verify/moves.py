@@ -13,7 +13,9 @@ from irlx.blocks import (
     JointTarget,
     LimitSwitchBlock,
     MoveBlock,
+    MoveKind,
     PoseTarget,
+    ReconfigureBlock,
 )
 from irlx.streams.joint_stream import Integers, JointStream
 
@@ -71,7 +73,8 @@ def misfit(stream: JointStream) -> tuple[int, str] | None:
         if record.block.id in begins:
             return record.tick, f"two blocks have the id {record.block.id}"
         previous = record.tick
-        begins[record.block.id] = record.tick if isinstance(record.block, MoveBlock) else -1
+        moves = isinstance(record.block, MoveBlock | ReconfigureBlock)
+        begins[record.block.id] = record.tick if moves else -1
     if previous >= rows:
         late = f"a block begins at tick {previous}, but the samples end at {rows - 1}"
         return _misplaced(segments(stream.block), begins) or (previous, late)
@@ -100,12 +103,12 @@ def _wrong_numbers(block: Block, joints: int) -> str:
     ranges: list[JointRange] = []
     if isinstance(block, MoveBlock):
         ranges = [clause.range for clause in block.limits]
-        if isinstance(block.target, JointTarget) and len(block.target.values) != joints:
-            return f"its target has {len(block.target.values)} values for {joints} joints"
-        if isinstance(block.target, PoseTarget) and block.target.orientation is not None:
-            length = float(np.linalg.norm(block.target.orientation))
-            if not abs(length - 1.0) < 1e-6:
-                return f"its orientation is a quaternion of length {length:.6g}"
+        reason = _wrong_targets(block, joints)
+        if reason:
+            return reason
+    for posture in _postures_beside(block):
+        if len(posture.values) != joints:
+            return f"its posture has {len(posture.values)} values for {joints} joints"
     if isinstance(block, LimitSwitchBlock) and block.range is not None:
         ranges = [block.range]
     if any(len(bounds.lower) != joints or len(bounds.upper) != joints for bounds in ranges):
@@ -113,3 +116,28 @@ def _wrong_numbers(block: Block, joints: int) -> str:
     if isinstance(block, FreezeBlock) and not all(1 <= joint <= joints for joint in block.joints):
         return f"it freezes a joint outside 1..{joints}"
     return ""
+
+
+def _wrong_targets(block: MoveBlock, joints: int) -> str:
+    """Why target and course of a move do not fit a robot of n joints or its kind, or ''."""
+    course = block.course
+    if (course is not None) is not (block.kind is MoveKind.CIRCLE):
+        return f"a {block.kind.value} {'needs a' if course is None else 'has no'} course"
+    if course is not None and course.angle is not None and not 0.0 < abs(course.angle) < np.inf:
+        return f"it cannot turn by {course.angle} rad"
+    for target in (block.target,) if course is None else (course.via, block.target):
+        if isinstance(target, JointTarget) and len(target.values) != joints:
+            return f"its target has {len(target.values)} values for {joints} joints"
+        if isinstance(target, PoseTarget) and target.orientation is not None:
+            length = float(np.linalg.norm(target.orientation))
+            if not abs(length - 1.0) < 1e-6:
+                return f"its orientation is a quaternion of length {length:.6g}"
+    return ""
+
+
+def _postures_beside(block: Block) -> list[JointTarget]:
+    """Postures of a block other than the target of a move."""
+    if isinstance(block, ReconfigureBlock):
+        return [block.target]
+    beside = block.reconfiguration if isinstance(block, MoveBlock) else None
+    return [] if beside is None else [beside]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from irlx.streams.joint_stream import Floats
 from irlx.streams.verify.rotations import about_axis, angle_between, rotation_vectors
@@ -22,12 +23,13 @@ class PathDeviation:
     """How rows of a move lie to its path, each of shape (R,).
 
     `position` m and `orientation` rad off the path; `along` = distance travelled, in the unit that
-    gives the parameter (m, or rad where the turn does).
+    gives the parameter (m, or rad where the turn does); `length` of the whole way in that unit.
     """
 
     position: Floats
     orientation: Floats
     along: Floats
+    length: float
 
 
 def line_deviation(
@@ -39,13 +41,34 @@ def line_deviation(
     way, in proportion to it: R(s) = R_start exp(s w), w = log(R_start' R_goal). The parameter s of
     a pose is that of the nearest point of the segment; of a pure turn, that of the nearest angle.
     """
-    turn = rotation_vectors((start[1].T @ goal[1])[None])[0]
-    ways = [turn]
-    if np.pi - np.linalg.norm(turn) < HALF_TURN:
-        # Rounding decides the sign of the axis; the other way round is as short.
-        ways.append(turn - 2.0 * np.pi * turn / np.linalg.norm(turn))
-    found = [_deviation(start, goal, way, positions, rotations) for way in ways]
+    found = [_deviation(start, goal, way, positions, rotations) for way in _turns(start[1], goal[1])]
     return min(found, key=lambda deviation: float(deviation.orientation.max(initial=0.0)))
+
+
+def turn_deviation(
+    start: Floats, goal: Floats, share: Floats, rotations: Floats, counts: NDArray[np.bool_] | None = None
+) -> Floats:
+    """Angle (R,) rad between rotations (R, 3, 3) and the turn from start to goal (3, 3) at the shares (R,).
+
+    Of two ways round as long as each other the one that fits better to the rows that count.
+    """
+    turned = start.T @ rotations
+    counts = np.ones(len(share), dtype=bool) if counts is None else counts
+    found = []
+    for turn in _turns(start, goal):
+        angle = float(np.linalg.norm(turn))
+        axis = turn / angle if angle > 0.0 else np.array([1.0, 0.0, 0.0])
+        found.append(angle_between(turned, about_axis(axis, share * angle)))
+    return min(found, key=lambda off: float(off[counts].max(initial=0.0)))
+
+
+def _turns(start: Floats, goal: Floats) -> list[Floats]:
+    """Rotation vectors (3,) of the shortest turn from start to goal, in the frame of the start."""
+    turn = rotation_vectors((start.T @ goal)[None])[0]
+    if np.pi - np.linalg.norm(turn) >= HALF_TURN:
+        return [turn]
+    # Rounding decides the sign of the axis; the other way round is as short.
+    return [turn, turn - 2.0 * np.pi * turn / np.linalg.norm(turn)]
 
 
 def _deviation(
@@ -73,7 +96,7 @@ def _deviation(
     axis = turn / angle if angle > 0.0 else np.array([1.0, 0.0, 0.0])
     off_line = np.linalg.norm(offsets - inside[:, None] * step, axis=1)
     off_turn = angle_between(turned, about_axis(axis, inside * angle))
-    return PathDeviation(off_line, off_turn, inside * scale)
+    return PathDeviation(off_line, off_turn, inside * scale, scale)
 
 
 def _angles_about(axis: Floats, turned: Floats) -> Floats:

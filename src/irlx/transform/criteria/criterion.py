@@ -30,3 +30,11 @@ class Criterion(ABC):
     @abstractmethod
     def hessian(self) -> Array:
         """Diagonal of the second derivative of phi by the step, shape (n,)."""
+
+    def pull(self, q: Array, step: Array) -> Array:
+        """Way from a step to the one that makes phi smallest where no path is asked for: -H^-1 g, (n,)."""
+        return -self.gradient(q, step) / self.hessian()
+
+    def inverse_hessian(self) -> Array:
+        """Diagonal of H^-1, shape (n,)."""
+        return 1.0 / self.hessian()

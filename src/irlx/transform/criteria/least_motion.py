@@ -12,6 +12,7 @@ class LeastMotion(Criterion):
 
     def __init__(self, weights: Array) -> None:
         self.weights = weights
+        self._inverse: Array = 1.0 / weights
 
     def value(self, q: Array, step: Array) -> float:
         """1/2 S' W S."""
@@ -24,3 +25,11 @@ class LeastMotion(Criterion):
     def hessian(self) -> Array:
         """W."""
         return self.weights
+
+    def pull(self, q: Array, step: Array) -> Array:
+        """-S."""
+        return -step
+
+    def inverse_hessian(self) -> Array:
+        """W^-1."""
+        return self._inverse

@@ -30,3 +30,7 @@ class Posture(Criterion):
     def hessian(self) -> Array:
         """W."""
         return self.weights
+
+    def pull(self, q: Array, step: Array) -> Array:
+        """r - (q + S)."""
+        return self.reference - (q + step)

@@ -1,0 +1,20 @@
+"""The block of a reconfiguration: a motion of the posture alone, the tool stays where it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from irlx.blocks.block import Block
+from irlx.blocks.move import JointTarget, MotionLaw
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReconfigureBlock(Block):
+    """Move to the posture `target`, or to the nearest one that keeps the tool pose and the limits.
+
+    `law` is latched when the statement ran: joints without a speed limit move with its `speed` (slides) or
+    `speed_ori` (turns).
+    """
+
+    target: JointTarget
+    law: MotionLaw

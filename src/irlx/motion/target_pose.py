@@ -1,0 +1,24 @@
+"""Poses that targets of moves stand for."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from irlx.blocks import JointTarget, PoseTarget
+
+Array = NDArray[np.float64]
+
+
+def target_pose(target: PoseTarget | JointTarget, start_rotation: Array) -> tuple[Array, Array]:
+    """Rotation (3, 3) and position (3,) m of a pose target; one without orientation keeps that of the start.
+
+    Postures become poses where the robot is known, before a path is planned: TypeError here.
+    """
+    if isinstance(target, JointTarget):
+        raise TypeError("a path is planned to poses, not to joint values")
+    rotation = start_rotation
+    if target.orientation is not None:
+        rotation = np.asarray(Rotation.from_quat(target.orientation).as_matrix())
+    return rotation, np.array(target.position)

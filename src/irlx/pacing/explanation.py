@@ -1,0 +1,190 @@
+"""All that decided one tick, for people who ask why a joint does what it does."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irlx.blocks import MoveBlock
+from irlx.pacing.demand import Demand
+from irlx.pacing.rows import MotionRows, PathPart
+from irlx.robot.limits import JointLimits
+from irlx.transform.criteria.least_motion import LeastMotion
+from irlx.transform.step_bounds import BoundSource, StepLimiter
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class JointTick:
+    """One joint in one tick: `value` at its end, its `step`, the bounds of that step and where each comes
+    from (position, speed, acceleration, braking; '' for none), and which of them holds it ('' for none).
+    rad or m."""
+
+    name: str
+    prismatic: bool
+    value: float
+    step: float
+    lower: float
+    lower_source: str
+    upper: float
+    upper_source: str
+    held: str
+
+
+@dataclass(frozen=True)
+class CriterionValue:
+    """Value of a criterion at the step of the tick; `chosen` for the one in force."""
+
+    name: str
+    value: float
+    chosen: bool
+
+
+@dataclass(frozen=True)
+class PathTick:
+    """What the path asked for at a tick.
+
+    `way` of `length` (m, or rad where the tool only `turns`), the `rate` there and the programmed one
+    (per s), tool pose (m, unit quaternion x y z w) and twist (m/s, rad/s) in the world.
+    """
+
+    way: float
+    length: float
+    turns: bool
+    rate: float
+    programmed_rate: float
+    position: tuple[float, ...]
+    orientation: tuple[float, ...]
+    twist: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class TickExplanation:
+    """What a tick was asked for and what it did.
+
+    `motion` in the program's words, its `line`; `way_of_pacing`: how its row was found; `path`: what was
+    asked for, None where that was no path (PTP, RECONFIGURATION, a hold); `path_error` m and rad.
+    """
+
+    tick: int
+    time: float
+    line: int
+    motion: str
+    way_of_pacing: str
+    path: PathTick | None
+    path_error: tuple[float, float]
+    joints: tuple[JointTick, ...]
+    criteria: tuple[CriterionValue, ...]
+
+    def to_plain(self) -> dict[str, object]:
+        """The explanation as JSON-able data."""
+        return asdict(self)
+
+
+def explain_tick(
+    rows: MotionRows,
+    start: Array,
+    tick: int,
+    limits: JointLimits,
+    weights: Array,
+    names: tuple[str, ...],
+    prismatic: tuple[bool, ...],
+    dt: float,
+) -> TickExplanation:
+    """Explanation of a tick of a motion from rest at posture `start` (n,).
+
+    `limits` in force; `weights` (n,) of least motion.
+    """
+    row = tick - rows.first_tick
+    before = np.vstack([start, start, rows.q])
+    step, last_step = before[row + 2] - before[row + 1], before[row + 1] - before[row]
+    asked = rows.path.demands if rows.path is not None else ()
+    demand = asked[row] if row < len(asked) else None
+    joints = _joints(rows, row, StepLimiter(limits, dt), step, last_step / dt, names, prismatic)
+    return TickExplanation(
+        tick,
+        tick * dt,
+        rows.block.origin.line,
+        f"MOVE {rows.block.kind.value}" if isinstance(rows.block, MoveBlock) else "RECONFIGURATION",
+        _way_of_pacing(rows, row),
+        _path_tick(rows.path, demand, rows.length) if rows.path is not None and demand is not None else None,
+        (float(rows.path_position_error[row]), float(rows.path_orientation_error[row])),
+        joints,
+        _criteria(rows, demand, before[row + 1], step, weights),
+    )
+
+
+def _way_of_pacing(rows: MotionRows, row: int) -> str:
+    if row == len(rows) - 1:
+        return "hold tick of a stop"
+    if rows.path is None:
+        return "row of a motion of the joints"
+    return "row of a motion planned as a whole" if rows.path.planned else "ordinary tick"
+
+
+def _path_tick(path: PathPart, demand: Demand, length: float) -> PathTick:
+    from scipy.spatial.transform import Rotation
+
+    part = demand.twist[3:] if path.is_turn else demand.twist[:3]
+    return PathTick(
+        demand.s,
+        length,
+        path.is_turn,
+        float(np.linalg.norm(part)),
+        float(path.law.rates_at(np.array([demand.s]))[0]),
+        tuple(float(x) for x in demand.position),
+        tuple(float(x) for x in Rotation.from_matrix(demand.rotation).as_quat()),
+        tuple(float(x) for x in demand.twist),
+    )
+
+
+def _joints(
+    rows: MotionRows,
+    row: int,
+    limiter: StepLimiter,
+    step: Array,
+    speed: Array,
+    names: tuple[str, ...],
+    prismatic: tuple[bool, ...],
+) -> tuple[JointTick, ...]:
+    start = rows.q[row] - step
+    bounds = limiter.bounds(start, speed)
+
+    def source(number: int, bound: float) -> str:
+        return BoundSource(number).name.lower() if np.isfinite(bound) else ""
+
+    found = []
+    for joint, name in enumerate(names):
+        flag = int(rows.active[row, joint])
+        held = f"{'upper' if flag > 0 else 'lower'} {BoundSource(abs(flag) - 1).name.lower()}" if flag else ""
+        lower, upper = float(bounds.lower[joint]), float(bounds.upper[joint])
+        found.append(
+            JointTick(
+                name,
+                prismatic[joint],
+                float(rows.q[row, joint]),
+                float(step[joint]),
+                lower,
+                source(int(bounds.lower_source[joint]), lower),
+                upper,
+                source(int(bounds.upper_source[joint]), upper),
+                held,
+            )
+        )
+    return tuple(found)
+
+
+def _criteria(
+    rows: MotionRows, demand: Demand | None, q: Array, step: Array, weights: Array
+) -> tuple[CriterionValue, ...]:
+    least = LeastMotion(weights)
+    if demand is None or rows.path is None:
+        return (CriterionValue(least.name, least.value(q, step), False),)
+    chosen = rows.path.term.at(demand.s)
+    values = [CriterionValue(chosen.name, chosen.value(q, step), True)]
+    if chosen.name != least.name:
+        values.append(CriterionValue(least.name, least.value(q, step), False))
+    return tuple(values)

@@ -1,0 +1,121 @@
+"""One motion along a path: the ordinary tick walk where it keeps everything, else a planned motion."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irlx.motion.plan_path import PlannedPath
+from irlx.pacing.clock import Clock, programmed_clock
+from irlx.pacing.demand import Demand, DemandModifier, demands
+from irlx.pacing.posture_term import PostureTerm
+from irlx.pacing.row_check import BrokenBound, broken_bound
+from irlx.pacing.slowdown.model import Model
+from irlx.pacing.slowdown.planned import MotionTask, PlannedMotion, Refusal, Ticking, plan_motion
+from irlx.pacing.slowing import Slowing, slowings
+from irlx.pacing.touching import touching
+from irlx.pacing.walk import Halt, walk
+from irlx.transform.step_bounds import BoundSource, StepLimiter
+from irlx.transform.tick import TickSolver
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class PacedPath:
+    """Rows q (M, n) of a motion along a path, the hold row not among them.
+
+    `active` (M, n) flags as in `MotionRows`, `demands` of each row, `slowings` where it runs slower than
+    programmed (empty for an ordinary walk), `planned` whether it is a planned motion.
+    """
+
+    q: Array
+    active: NDArray[np.int8]
+    demands: tuple[Demand, ...]
+    iterations: int
+    slowings: tuple[Slowing, ...] = ()
+    planned: bool = False
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Why a motion has no rows: what ended the ordinary walk, and why no slower clock helps."""
+
+    halt: Halt | None
+    broken: BrokenBound | None
+    refusal: Refusal
+
+
+@dataclass(frozen=True)
+class PathMotion:
+    """A motion from rest at posture `start` (n,) along a planned path.
+
+    `term` is the posture term in force; ticks of `dt` s, the first of them `first_tick` of the stream;
+    `ticks_of` gives the ticks of a duration, or raises what too long a motion deserves.
+    """
+
+    plan: PlannedPath
+    start: Array
+    term: PostureTerm
+    dt: float
+    first_tick: int
+    ticks_of: Callable[[float], int]
+    modifiers: Sequence[DemandModifier] = ()
+
+    def demands_of(self, clock: Clock) -> list[Demand]:
+        """Demands of the ticks of a clock, modifiers applied."""
+        return list(demands(self.plan.path, clock, self.first_tick, self.modifiers))
+
+
+def pace_path(motion: PathMotion, model: Model, solver: TickSolver) -> PacedPath | Failure:
+    """Rows of a motion: at the programmed speed where every tick can, else slowed where it must be."""
+    clock = programmed_clock(motion.plan.law, motion.plan.ticks, motion.dt)
+    walked = walk(
+        solver,
+        StepLimiter(model.limits, motion.dt),
+        lambda demand: motion.term.at(demand.s),
+        model.free,
+        motion.start,
+        motion.demands_of(clock),
+    )
+    broken = None
+    if walked.halt is None:
+        held = np.vstack([walked.q, walked.q[-1:]])
+        broken = broken_bound(motion.start, held, model.limits, motion.dt)
+        if broken is None and not (motion.term.draws and _rings(walked.active)):
+            return PacedPath(walked.q, walked.active, walked.demands, walked.iterations)
+    task = MotionTask(
+        motion.plan.path,
+        motion.plan.programmed,
+        motion.plan.programmed.acc,
+        motion.start,
+        motion.term.at,
+        Ticking(motion.dt, motion.ticks_of, motion.demands_of),
+    )
+    found = plan_motion(model, task)
+    if isinstance(found, Refusal):
+        if walked.halt is None and broken is None:
+            return PacedPath(walked.q, walked.active, walked.demands, walked.iterations)
+        return Failure(walked.halt, broken, found)
+    return _planned(motion, model, found)
+
+
+def _planned(motion: PathMotion, model: Model, found: PlannedMotion) -> PacedPath:
+    clock = found.timed.clock
+    rates = motion.plan.programmed.rates_at(clock.s)
+    return PacedPath(
+        found.q,
+        touching(motion.start, found.q, model.limits, motion.dt),
+        found.demands,
+        0,
+        slowings(clock, rates, found.factor, motion.dt, len(found.q)),
+        True,
+    )
+
+
+def _rings(active: NDArray[np.int8]) -> bool:
+    """Whether an acceleration bound held a joint: a posture that is drawn back then may swing about it."""
+    return bool(np.any(np.abs(active) == 1 + BoundSource.ACCELERATION))

@@ -1,0 +1,48 @@
+"""The one posture term of a move: a posture asked for, else cyclic return, else least motion."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irlx.motion.trapezoid import Trapezoid
+from irlx.pacing.governed_return import governed_reference, way_to_best
+from irlx.pacing.slowdown.model import Model
+from irlx.transform.criteria.criterion import Criterion
+from irlx.transform.criteria.least_motion import LeastMotion
+from irlx.transform.criteria.posture import Posture
+from irlx.transform.qp.solver import QpSolver
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class PostureTerm:
+    """Criterion of a move by its path parameter; `draws` tells that it draws the joints to a posture."""
+
+    at: Callable[[float], Criterion]
+    draws: bool
+
+
+def posture_term(
+    model: Model, start: Array, law: Trapezoid, asked: Array | None, cyclic: Array | None, qp: QpSolver
+) -> PostureTerm:
+    """Posture term of a move that starts at posture `start` (n,) and follows `law`.
+
+    `asked` (n,) is the posture the move is to end in: its reference runs there from the start in step
+    with the path parameter, so that both ends are reached together. Else `cyclic` (n,), the posture of
+    CYCLICSTART, draws every row, governed while the robot stands away from the best one for it.
+    """
+    weights = model.weights
+    if asked is not None:
+        way = asked - start
+        return PostureTerm(lambda s: Posture(weights, start + (s / law.length) * way), True)
+    if cyclic is not None:
+        away = way_to_best(model, start, cyclic, qp)
+        reference = governed_reference(cyclic, away, law, model.limits)
+        return PostureTerm(lambda s: Posture(weights, reference(s)), True)
+    fixed = LeastMotion(weights)
+    return PostureTerm(lambda s: fixed, False)

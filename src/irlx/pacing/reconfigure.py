@@ -1,0 +1,142 @@
+"""RECONFIGURATION as a motion: along the posture flow, on the fastest clock that the joints allow."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import inf
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from irlx.blocks import ReconfigureBlock
+from irlx.diagnostics import Place
+from irlx.motion.plan_joint_line import RAMP_TIME
+from irlx.motion.whole_ticks import ticks_of_move
+from irlx.pacing.clock import Clock
+from irlx.pacing.demand import Demand
+from irlx.pacing.errors import PacingError
+from irlx.pacing.impossible import explain_broken_row
+from irlx.pacing.rows import MotionRows
+from irlx.pacing.slowdown.clock import plan_clock
+from irlx.pacing.slowdown.clock_bounds import clock_bounds
+from irlx.pacing.slowdown.curve import JointCurve
+from irlx.pacing.slowdown.ladder import TimedCurve
+from irlx.pacing.slowdown.model import Model
+from irlx.pacing.slowdown.planned import Refusal, Ticking, rows_on_clock
+from irlx.pacing.snap import SAME_VALUE
+from irlx.pacing.touching import touching
+from irlx.robot.limits import JointLimits
+from irlx.transform.posture_flow import PostureFlow, posture_flow
+from irlx.transform.qp.solver import QpSolver
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Reconfigured:
+    """What a RECONFIGURATION becomes: its flow, its rows (None where nothing moves), and which joints were
+    `held` (n,), frozen or with a limit of 0."""
+
+    flow: PostureFlow
+    rows: MotionRows | None
+    held: NDArray[np.bool_]
+
+
+def reconfigured(
+    model: Model,
+    block: ReconfigureBlock,
+    q: Array,
+    konf: Array,
+    dt: float,
+    first_tick: int,
+    place: Place,
+    qp: QpSolver,
+) -> Reconfigured:
+    """Motion from rest at posture q (n,) along the fibre of its tool pose to konf (n,) or the nearest to it.
+
+    Joints without a speed limit move with the block's `speed_ori` (turns) or `speed` (slides), those without
+    an acceleration limit reach their speed in 0.2 s; a joint with a limit of 0 stays. Raises MotionError,
+    IRL425, where it would take too long.
+    """
+    limits = working_limits(model, block)
+    free = model.free & (_either_way(limits, "speed") > 0.0) & (_either_way(limits, "acceleration") > 0.0)
+    mobile = replace(model, limits=limits, free=free)
+    flow = posture_flow(model.kinematics, q, konf, model.weights, limits, free, qp)
+    if len(flow.points) == 1:
+        return Reconfigured(flow, None, ~free)
+    rows, way = _rows(mobile, flow.points, dt, first_tick, place)
+    return Reconfigured(flow, _motion_rows(model, block, q, rows, way, dt, first_tick), ~free)
+
+
+def working_limits(model: Model, block: ReconfigureBlock) -> JointLimits:
+    """The limits in force, with a speed and an acceleration also for joints that have none."""
+    axes = model.kinematics.description.axes
+    usual = np.array([block.law.speed if axis.is_prismatic else block.law.speed_ori for axis in axes])
+    limits = model.limits
+    lower, upper = limits.pair("speed")
+    limits = limits.with_pair("speed", *_known(lower, upper, usual))
+    lower, upper = limits.pair("acceleration")
+    return limits.with_pair("acceleration", *_known(lower, upper, _either_way(limits, "speed") / RAMP_TIME))
+
+
+def _known(lower: Array, upper: Array, usual: Array) -> tuple[Array, Array]:
+    return np.where(np.isfinite(lower), lower, -usual), np.where(np.isfinite(upper), upper, usual)
+
+
+def _either_way(limits: JointLimits, kind: str) -> Array:
+    """What each joint may use in both directions, shape (n,)."""
+    lower, upper = limits.pair(kind)
+    return np.asarray(np.minimum(-lower, upper))
+
+
+def _rows(model: Model, points: Array, dt: float, first_tick: int, place: Place) -> tuple[Array, Array]:
+    """Rows (N, n) at ticks 1 .. N along the curve through points, and the way (N,) at them."""
+    knots = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))))
+    curve = JointCurve(knots, points)
+    clock = plan_clock(clock_bounds(curve, model.limits, np.full(knots.size, inf), inf))
+    if clock is None:
+        raise ArithmeticError("a curve has no clock from rest to rest: the clock planner is at fault")
+    rotation, position = model.kinematics.tool_pose(points[0])
+
+    def demands_of(ticking: Clock) -> list[Demand]:
+        return [Demand(k + 1, float(s), position, rotation, np.zeros(6)) for k, s in enumerate(ticking.s)]
+
+    ticking = Ticking(dt, lambda duration: ticks_of_move(duration, dt, place), demands_of)
+    found = rows_on_clock(model, TimedCurve(curve, clock), ticking, 0.0)
+    if isinstance(found, Refusal):
+        if found.broken is None:
+            raise ArithmeticError("a posture curve was refused without a reason: the planner is at fault")
+        raise PacingError(explain_broken_row(found.broken, first_tick, model.kinematics.description, place))
+    return found.q, np.array([demand.s for demand in found.demands])
+
+
+def _motion_rows(
+    model: Model, block: ReconfigureBlock, q: Array, rows: Array, way: Array, dt: float, first_tick: int
+) -> MotionRows:
+    """Rows with their hold tick, the tool measured against its pose at the start."""
+    kinematics = model.kinematics
+    held = np.vstack([rows, rows[-1:]])
+    start_rotation, start_position = kinematics.tool_pose(q)
+    poses = [kinematics.tool_pose(row) for row in held]
+    rotation, position = (np.array(part) for part in zip(*poses, strict=True))
+    return MotionRows(
+        block,
+        first_tick,
+        held,
+        position,
+        rotation,
+        np.linalg.norm(position - start_position, axis=1),
+        Rotation.from_matrix(start_rotation.T @ rotation).magnitude(),
+        np.vstack([touching(q, rows, model.limits, dt), np.zeros_like(held[:1], dtype=np.int8)]),
+        np.append(way, way[-1]),
+        float(way[-1]),
+        0,
+    )
+
+
+def settled_konf(konf: Array, q: Array, limits: JointLimits) -> Array:
+    """The posture konf (n,) with values that mean the present ones, or a limit, exactly on them."""
+    konf = np.where(np.abs(konf - q) <= SAME_VALUE, q, konf)
+    inside = limits.into_positions(konf)
+    return np.where(np.abs(konf - inside) <= SAME_VALUE, inside, konf)

@@ -1,0 +1,248 @@
+"""First posture for every knot: the local law, its joint bounds stretched where they must be.
+
+Between two knots the step D of the joints may be as long as speeds and the way to position limits allow
+in the programmed time. Where no step on the path is that short, *one* number eps >= 0 stretches all bounds
+alike: it is the local loss of time, and it is paid for together with the motion,
+
+    min 1/2 (D - D_c)' (W / dT^2) (D - D_c) + nu (eps + eps^2 / 2000),   -dn (1 + eps) <= D <= up (1 + eps),
+
+D_c the criterion's own step. Hard bounds instead would whip the null space about. Positions are never
+stretched. Accelerations play no part here: the clock sees to them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+
+from irlx.pacing.slowdown.grid import PathGrid
+from irlx.pacing.slowdown.model import Model
+from irlx.pacing.slowdown.reserve import rounded_inside
+from irlx.transform.compact import null_space_rows
+from irlx.transform.criteria.criterion import Criterion
+from irlx.transform.qp.dual import DualSolver
+from irlx.transform.qp.proxqp import ProxQpSolver
+from irlx.transform.step_bounds import BoundSource, StepBounds, braking_speed
+from irlx.transform.tick import TickProblem, TickSolution, TickSolver
+
+Array = NDArray[np.float64]
+
+_ROUNDS = 12
+_SETTLED = 1e-6
+_NO_SLOPE = 1e-14
+_ROUNDING = 1e-12
+_BRAKE_SHARE = 0.9
+_CURVATURE = 1e-3
+_SHORTAGE_WEIGHT = 1e4
+_LONGEST = 0.5
+_LEAD_BACK = 12.0
+
+
+@dataclass(frozen=True)
+class Passage:
+    """Postures q (N + 1, n) of the knots and the stretch (N,) of each interval's bounds.
+
+    `stopped` is None, or the interval that no step crosses and how it ended there.
+    """
+
+    q: Array
+    stretch: Array
+    stopped: tuple[int, TickSolution] | None = None
+
+
+def elastic_walk(
+    model: Model,
+    grid: PathGrid,
+    start: Array,
+    criterion_of: Callable[[float], Criterion],
+    bounds: tuple[Array, Array],
+    reserve: float,
+) -> Passage:
+    """Walk from posture `start` (n,) along the knots of a grid.
+
+    `criterion_of` gives the criterion for a path parameter, `bounds` the lower and upper positions
+    (N + 1, n) of the knots; a joint outside them comes back by `reserve` / 12 an interval.
+    """
+    solver = TickSolver(model.kinematics, ProxQpSolver())
+    targets = model.targets(grid.poses)
+    q = np.empty((grid.intervals + 1, start.size))
+    stretch = np.zeros(grid.intervals)
+    q[0] = start
+    for i in range(grid.intervals):
+        target = targets[i + 1]
+        room = _Room.at(model, q[i], (bounds[0][i + 1], bounds[1][i + 1]), reserve, float(grid.times[i]))
+        criterion = criterion_of(float(grid.s[i + 1]))
+        easy = solver.solve(TickProblem(target, q[i], room.none(), criterion, model.free))
+        if easy.solved and room.holds(easy.q - q[i]):
+            q[i + 1] = rounded_inside(easy.q, model.limits)
+            continue
+        begin = easy.q - q[i] if easy.solved else np.zeros(start.size)
+        found = _Stretch(model, solver, target, q[i], room, criterion).solve(begin)
+        if found is None:
+            last = solver.solve(TickProblem(target, q[i], room.positions(), criterion, model.free))
+            if not last.solved:
+                return Passage(q[: i + 1], stretch[:i], (i, last))
+            found = last.q - q[i], room.stretch_of(last.q - q[i])
+        q[i + 1] = rounded_inside(q[i] + found[0], model.limits)
+        stretch[i] = found[1]
+    return Passage(q, stretch)
+
+
+@dataclass(frozen=True)
+class _Room:
+    """Bounds of one interval: position `low`, `high`; what may be stretched, `down` and `up`, all (n,)."""
+
+    low: Array
+    high: Array
+    down: Array
+    up: Array
+    duration: float
+
+    @classmethod
+    def at(
+        cls, model: Model, q: Array, bounds: tuple[Array, Array], reserve: float, duration: float
+    ) -> _Room:
+        limits = model.limits
+        low = np.maximum(np.minimum(bounds[0], q + reserve / _LEAD_BACK), limits.position_lower) - q
+        high = np.minimum(np.maximum(bounds[1], q - reserve / _LEAD_BACK), limits.position_upper) - q
+        room = np.maximum(np.concatenate([high, -low]), 0.0)
+        braking = np.concatenate([-limits.acceleration_lower, limits.acceleration_upper])
+        fastest = np.concatenate([limits.speed_upper, -limits.speed_lower])
+        both = np.minimum(fastest, braking_speed(room, _BRAKE_SHARE * braking, duration))
+        up, down = both[: q.size], both[q.size :]
+        return cls(low, high, duration * down, duration * up, duration)
+
+    def none(self) -> StepBounds:
+        """No bounds."""
+        wide = np.full(self.low.size, np.inf)
+        source = np.full(self.low.size, BoundSource.POSITION, dtype=np.int8)
+        return StepBounds(-wide, wide, source, source)
+
+    def holds(self, step: Array) -> bool:
+        """Whether a step (n,) needs no stretch."""
+        lower, upper = np.maximum(self.low, -self.down), np.minimum(self.high, self.up)
+        return bool(np.all((lower <= step) & (step <= upper)))
+
+    def positions(self) -> StepBounds:
+        """Position bounds alone."""
+        source = np.full(self.low.size, BoundSource.POSITION, dtype=np.int8)
+        return StepBounds(self.low, self.high, source, source)
+
+    def stretch_of(self, step: Array) -> float:
+        """Stretch that a step (n,) needs."""
+        bound = np.where(step > 0.0, self.up, self.down)
+        share = np.abs(step) / np.maximum(bound, 1e-300)
+        return max(float(np.max(np.where(np.isfinite(bound), share, 0.0))) - 1.0, 0.0)
+
+
+class _Stretch:
+    """The elastic quadratic problem of one interval, iterated until the pose is met."""
+
+    def __init__(
+        self,
+        model: Model,
+        solver: TickSolver,
+        target: pin.SE3,
+        q: Array,
+        room: _Room,
+        criterion: Criterion,
+    ) -> None:
+        self._model, self._solver, self._room = model, solver, room
+        self._problem = TickProblem(target, q, room.none(), criterion, model.free)
+        speed = np.minimum(model.limits.speed_upper, -model.limits.speed_lower)
+        speed = np.where(np.isfinite(speed), speed, 1.0)
+        # A price in the units of the motion's own cost: one unit of stretch costs the motion at all limits.
+        self._price = max(float(model.weights @ speed**2), 1e-12)
+
+    def solve(self, begin: Array) -> tuple[Array, float] | None:
+        """Whole step (n,) and its stretch, searched from `begin`; None where none meets the pose."""
+        whole = begin
+        for _ in range(_ROUNDS):
+            moved = self._round(whole)
+            if moved is None:
+                return None
+            step, stretch = moved
+            if not np.all(np.isfinite(step)):
+                return None
+            change = step - whole
+            largest = float(np.max(np.abs(change), initial=0.0))
+            whole = whole + change * min(1.0, _LONGEST / max(largest, 1e-300))
+            if largest <= _SETTLED:
+                return whole, stretch
+        return None
+
+    def _round(self, whole: Array) -> tuple[Array, float] | None:
+        free, room = self._model.free, self._room
+        problem, d_free = self._solver.newton_problem(self._problem, whole)
+        rows = null_space_rows(problem) * room.duration
+        found = _elastic_step(rows, whole[free] + d_free, _reduced(room, free), self._price)
+        if found is None:
+            return None
+        step = np.zeros(whole.size)
+        step[free] = found[0]
+        return step, found[1]
+
+
+def _reduced(room: _Room, free: NDArray[np.bool_]) -> _Room:
+    return _Room(room.low[free], room.high[free], room.down[free], room.up[free], room.duration)
+
+
+def _elastic_step(rows: Array, target: Array, room: _Room, price: float) -> tuple[Array, float] | None:
+    """Minimise 1/2 |z|^2 + price (eps + eps^2 / 2000), D = target + rows z; returns D and eps."""
+    solve = _one_unknown if rows.shape[1] == 1 else _many_unknowns
+    return solve(rows, target, room, price)
+
+
+def _many_unknowns(rows: Array, target: Array, room: _Room, price: float) -> tuple[Array, float] | None:
+    """With e = scale (eps + offset) the price is half a square, and all is a least-norm problem in (z, e)."""
+    count, unknowns = rows.shape
+    scale, offset = np.sqrt(_CURVATURE * price), 1.0 / _CURVATURE
+    above, below = np.flatnonzero(np.isfinite(room.up)), np.flatnonzero(np.isfinite(room.down))
+    size = count + above.size + below.size + 1
+    matrix = np.zeros((size, unknowns + 1))
+    lower, upper = np.full(size, -np.inf), np.full(size, np.inf)
+    matrix[:count, :unknowns] = rows
+    lower[:count], upper[:count] = room.low - target, room.high - target
+    first, second = slice(count, count + above.size), slice(count + above.size, size - 1)
+    matrix[first, :unknowns], matrix[first, unknowns] = rows[above], -room.up[above] / scale
+    upper[first] = room.up[above] * (1.0 - offset) - target[above]
+    matrix[second, :unknowns], matrix[second, unknowns] = rows[below], room.down[below] / scale
+    lower[second] = -room.down[below] * (1.0 - offset) - target[below]
+    matrix[-1, unknowns], lower[-1] = 1.0, scale * offset
+    z = DualSolver().solve(matrix, lower, upper).z
+    if z is None:
+        return None
+    return target + rows @ z[:unknowns], max(float(z[unknowns]) / scale - offset, 0.0)
+
+
+def _one_unknown(rows: Array, target: Array, room: _Room, price: float) -> tuple[Array, float] | None:
+    """The cost over the one unknown is convex and made of parabolas: its least value is where one of them
+    has its own, where two of them meet, or at an end of what the positions allow."""
+    slope = rows[:, 0]
+    still = np.abs(slope) <= _NO_SLOPE
+    if np.any(still & ((target > room.high + _ROUNDING) | (target < room.low - _ROUNDING))):
+        return None
+    safe = np.where(still, 1.0, slope)
+    ends = np.stack([(room.low - target) / safe, (room.high - target) / safe])
+    least = float(np.max(np.where(still, -np.inf, np.min(ends, axis=0))))
+    most = float(np.min(np.where(still, np.inf, np.max(ends, axis=0))))
+    if least > most:
+        return None
+    # Stretch as straight lines in z: nothing, and what each bound asks for.
+    above, below = np.isfinite(room.up) & (room.up > 0.0), np.isfinite(room.down) & (room.down > 0.0)
+    at = np.concatenate(
+        [[0.0], target[above] / room.up[above] - 1.0, -target[below] / room.down[below] - 1.0]
+    )
+    rise = np.concatenate([[0.0], slope[above] / room.up[above], -slope[below] / room.down[below]])
+    own = -price * rise * (1.0 + _CURVATURE * at) / (1.0 + price * _CURVATURE * rise**2)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        meet = ((at[:, None] - at) / (rise - rise[:, None])).ravel()
+    tried = np.concatenate([own, meet[np.isfinite(meet)], [0.0]])
+    tried = np.clip(tried, least, most)
+    stretch = np.max(at[:, None] + rise[:, None] * tried, axis=0)
+    best = int(np.argmin(0.5 * tried**2 + price * (stretch + 0.5 * _CURVATURE * stretch**2)))
+    return target + slope * tried[best], float(stretch[best])

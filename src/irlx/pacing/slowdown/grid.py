@@ -1,0 +1,74 @@
+"""Knots of a path for planning, independent of the tick."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irlx.motion.pose_path import PosePath, Poses
+from irlx.motion.trapezoid import Trapezoid
+
+Array = NDArray[np.float64]
+
+STEP = 0.004
+"""Programmed time of an interval at full speed, s."""
+
+LONG_STEP = 0.016
+"""The same for motions so long that fine knots would cost much and bring nothing, s."""
+
+LONG_MOTION = 60.0
+"""Programmed duration from which on `LONG_STEP` is reached, s; shorter ones lie between."""
+
+LEAST_INTERVALS = 40
+
+_NEAREST_CORNERS = 1e-4
+"""Corners closer than this part of an interval are one: a curve through knots so close bends by rounding."""
+
+
+@dataclass(frozen=True)
+class PathGrid:
+    """Knots `s` (N + 1,) of the path parameter with their tool poses.
+
+    `times` (N,) programmed time of each interval, s; `rates` (N + 1,) programmed ds/dt at the knots;
+    `step` programmed time of an interval at full speed, s.
+    """
+
+    s: Array
+    times: Array
+    rates: Array
+    poses: Poses
+    step: float
+
+    @property
+    def intervals(self) -> int:
+        """Number N of intervals."""
+        return int(self.times.size)
+
+
+def path_grid(path: PosePath, law: Trapezoid) -> PathGrid:
+    """Knots of a path that is programmed to be run by `law`.
+
+    Pieces between the corners of the law are cut evenly, into intervals of about `STEP` at full
+    speed, at least `LEAST_INTERVALS` in all; a clock whose knots miss the corners loses 1E-3 of its time.
+    """
+    step = float(np.clip(STEP * law.duration / LONG_MOTION * 4.0, STEP, LONG_STEP))
+    width = min(law.speed * step, path.length / LEAST_INTERVALS)
+    corners = _apart(law.corners, _NEAREST_CORNERS * width)
+    pieces = [
+        np.linspace(start, end, max(1, int(np.ceil((end - start) / width - 1e-9))) + 1)[1:]
+        for start, end in pairwise(corners)
+    ]
+    s = np.concatenate([[0.0], *pieces])
+    return PathGrid(s, np.diff(law.times_at(s)), law.rates_at(s), path.poses(s), step)
+
+
+def _apart(corners: tuple[float, ...], least: float) -> list[float]:
+    """The corners without inner ones that lie within `least` of the one before or of the end."""
+    kept = [corners[0]]
+    for corner in corners[1:-1]:
+        if corner - kept[-1] > least and corners[-1] - corner > least:
+            kept.append(corner)
+    return [*kept, corners[-1]]

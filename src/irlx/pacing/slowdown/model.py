@@ -1,0 +1,87 @@
+"""What every stage of a planned motion needs to know of the robot."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+
+from irlx.motion.pose_path import Poses
+from irlx.robot.kinematics import Kinematics
+from irlx.robot.limits import JointLimits
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Model:
+    """Kinematics, limits in force, joint weights (n,), and which joints are not frozen (n,)."""
+
+    kinematics: Kinematics
+    limits: JointLimits
+    weights: Array
+    free: NDArray[np.bool_]
+
+    @property
+    def freedom(self) -> int:
+        """Joints more than the pose needs: dimension r of the null space."""
+        return int(np.count_nonzero(self.free)) - 6
+
+    def targets(self, poses: Poses) -> list[pin.SE3]:
+        """Poses as the kinematics keeps them; made once for all uses of a grid."""
+        target = self.kinematics.target
+        return [target(r, p) for r, p in zip(poses.rotation, poses.position, strict=True)]
+
+    def differences(self, q: Array, targets: Sequence[pin.SE3]) -> tuple[Array, Array]:
+        """Twists (N, 6) from the tool at q (N, n) to the targets, tool Jacobians (N, 6, f) of free joints."""
+        twists = np.empty((len(q), 6))
+        jacobians = np.empty((len(q), 6, q.shape[1]))
+        difference = self.kinematics.difference
+        for k, (row, target) in enumerate(zip(q, targets, strict=True)):
+            twists[k], jacobians[k] = difference(row, target)
+        return twists, jacobians[:, :, self.free]
+
+    def onto_path(
+        self,
+        q: Array,
+        targets: Sequence[pin.SE3],
+        rounds: int,
+        held: NDArray[np.bool_] | None = None,
+    ) -> OntoPath:
+        """Postures after `rounds` W-least Newton steps towards the targets.
+
+        Frozen joints keep their bits, so do those of single rows in `held` (N, n). Raises
+        numpy.linalg.LinAlgError where a Jacobian has lost its rank.
+        """
+        inverse = np.ones((1, 1, 1)) / self.weights[self.free]
+        if held is not None:
+            inverse = np.where(held[:, None, self.free], 0.0, inverse)
+        moved = q.copy()
+        twists, jacobians = np.zeros((len(q), 6)), np.zeros((len(q), 6, int(np.sum(self.free))))
+        for _ in range(rounds):
+            twists, jacobians = self.differences(moved, targets)
+            scaled = jacobians * inverse
+            k = np.linalg.solve(scaled @ np.swapaxes(jacobians, 1, 2), twists[:, :, None])
+            moved[:, self.free] += (np.swapaxes(scaled, 1, 2) @ k)[:, :, 0]
+        return OntoPath(moved, twists, jacobians)
+
+
+class OntoPath(NamedTuple):
+    """Postures q (N, n) brought onto poses; twists (N, 6) and Jacobians (N, 6, f) before the last step.
+
+    That step squares the twists.
+    """
+
+    q: Array
+    twists: Array
+    jacobians: Array
+
+
+def null_spaces(jacobians: Array) -> Array:
+    """Orthonormal bases (N, f, r) of the null spaces of Jacobians (N, 6, f)."""
+    orthonormal = np.linalg.qr(np.swapaxes(jacobians, 1, 2), mode="complete")[0]
+    return np.asarray(orthonormal[:, :, 6:])

@@ -1,0 +1,198 @@
+"""A whole motion planned: from its path to rows that keep every bound, or the reason why there are none."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irlx.blocks import LimitKind
+from irlx.motion.pose_path import PosePath, Poses
+from irlx.motion.trapezoid import Trapezoid
+from irlx.pacing.clock import Clock
+from irlx.pacing.demand import Demand
+from irlx.pacing.row_check import BrokenBound, excess_of
+from irlx.pacing.slowdown.clock import PlannedClock
+from irlx.pacing.slowdown.elastic_walk import elastic_walk
+from irlx.pacing.slowdown.grid import PathGrid, path_grid
+from irlx.pacing.slowdown.ladder import TimedCurve, timed_curves
+from irlx.pacing.slowdown.model import Model
+from irlx.pacing.slowdown.resample import resample
+from irlx.pacing.slowdown.reserve import RESERVE, reserved
+from irlx.transform.criteria.criterion import Criterion
+from irlx.transform.tick import TickSolution
+
+Array = NDArray[np.float64]
+
+SLOWEST_SHARE = 1e-3
+"""Share of the programmed rate below which a motion counts as standing."""
+
+LONGEST_STAND = 2.0
+"""Time (s) that a motion may stand in all because of a bound that no slowness satisfies."""
+
+_STRETCHES = 8
+_RESERVES = 4
+_RESERVE_GROWTH = 4.0
+_STRETCH_MARGIN = 1e-6
+_LARGEST_STRETCH = 2.0
+
+
+@dataclass(frozen=True)
+class PlannedMotion:
+    """Rows q (M, n) of ticks 1 .. M, their demands, and the clock they follow, `factor` times slower."""
+
+    q: Array
+    demands: tuple[Demand, ...]
+    timed: TimedCurve
+    factor: float
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """Why no clock, however slow, leads through a motion, and where on the path (`s`).
+
+    `solution` holds the failed step of the walk. Else the clock of `timed` stands at `knot`, for the bound
+    it names. Else only the differences of the rows say no: `broken`, its row counted from the start of
+    the motion.
+    """
+
+    s: float
+    solution: TickSolution | None = None
+    timed: TimedCurve | None = None
+    knot: int = -1
+    broken: BrokenBound | None = None
+
+
+@dataclass(frozen=True)
+class Ticking:
+    """How a clock becomes ticks of `dt` s: `ticks_of` a duration, and `demands_of` a clock's ticks.
+
+    `ticks_of` may raise what a motion of too many ticks deserves.
+    """
+
+    dt: float
+    ticks_of: Callable[[float], int]
+    demands_of: Callable[[Clock], Sequence[Demand]]
+
+
+@dataclass(frozen=True)
+class MotionTask:
+    """A motion to plan from posture `start` (n,): its path, programmed law, criterion by path parameter.
+
+    `acc` is the largest |d2s/dt2|.
+    """
+
+    path: PosePath
+    law: Trapezoid
+    acc: float
+    start: Array
+    criterion_of: Callable[[float], Criterion]
+    ticking: Ticking
+
+
+def plan_motion(model: Model, task: MotionTask) -> PlannedMotion | Refusal:
+    """Plan a motion from rest to rest that slows down just where a joint bound asks for it.
+
+    See docs/reference/pacing.md for the method and what it promises.
+    """
+    model = replace(model, free=model.free & _can_move(model))
+    grid = path_grid(task.path, task.law)
+    reserve = RESERVE
+    found: PlannedMotion | Refusal = Refusal(0.0)
+    for _ in range(_RESERVES):
+        bounds = reserved(model.limits, grid.intervals + 1, reserve)
+        found = _with_reserve(model, task, grid, bounds, reserve)
+        if not isinstance(found, Refusal) or found.broken is None:
+            break
+        reserve *= _RESERVE_GROWTH
+    return found
+
+
+def _can_move(model: Model) -> NDArray[np.bool_]:
+    """Joints that some limit does not hold in place: a speed of 0 both ways is no direction to go."""
+    limits = model.limits
+    held = (limits.speed_lower == 0.0) & (limits.speed_upper == 0.0)
+    held |= (limits.acceleration_lower == 0.0) & (limits.acceleration_upper == 0.0)
+    held |= limits.position_lower == limits.position_upper
+    return np.asarray(~held)
+
+
+def _with_reserve(
+    model: Model, task: MotionTask, grid: PathGrid, bounds: tuple[Array, Array], reserve: float
+) -> PlannedMotion | Refusal:
+    passage = elastic_walk(model, grid, task.start, task.criterion_of, bounds, reserve)
+    if passage.stopped is not None:
+        interval, solution = passage.stopped
+        return Refusal(float(grid.s[interval + 1]), solution=solution)
+    curves = timed_curves(model, grid, passage.q, bounds, task.acc)
+    if not curves:
+        return _outside(model, grid, passage.q)
+    standing = _standing(curves[0].clock, grid)
+    if standing is not None:
+        return Refusal(float(grid.s[standing]), timed=curves[0], knot=standing)
+    found: PlannedMotion | Refusal = Refusal(0.0)
+    for timed in curves:
+        # The path correction of a rough curve may pass a position limit on which a joint starts.
+        found = rows_on_clock(model, timed, task.ticking, float(np.sum(grid.times)))
+        if isinstance(found, PlannedMotion):
+            break
+    return found
+
+
+def _outside(model: Model, grid: PathGrid, q: Array) -> Refusal:
+    """The knot at which the walked postures (N + 1, n) leave a position limit most."""
+    lower, upper = model.limits.pair("position")
+    knot, joint = np.unravel_index(int(np.argmax(np.maximum(q - upper, lower - q))), q.shape)
+    value = float(q[knot, joint])
+    bound = float((upper if value > upper[joint] else lower)[joint])
+    return Refusal(float(grid.s[knot]), broken=BrokenBound(0, int(joint), LimitKind.POSITION, value, bound))
+
+
+def _standing(clock: PlannedClock, grid: PathGrid) -> int | None:
+    """Knot at which the clock stands for good, or for longer than allowed in all; else None."""
+    inner = clock.x[1:-1]
+    if np.any(inner <= 0.0):
+        return int(np.argmin(inner)) + 1
+    shares = np.sqrt(np.maximum(clock.x[:-1], clock.x[1:])) / np.maximum(grid.rates[:-1], grid.rates[1:])
+    slow = shares < SLOWEST_SHARE
+    if float(np.sum(np.diff(clock.times)[slow])) > LONGEST_STAND:
+        return int(np.argmin(np.where(slow, shares, np.inf))) + 1
+    return None
+
+
+def rows_on_clock(model: Model, timed: TimedCurve, ticking: Ticking, least: float) -> PlannedMotion | Refusal:
+    """Rows at the whole ticks of a clock, of `least` s or longer, slowed where differences pass a bound."""
+    start = timed.curve.q[0]
+    duration = max(timed.clock.duration, least)
+    found: PlannedMotion | Refusal = Refusal(0.0)
+    for _ in range(_STRETCHES):
+        ticks = ticking.ticks_of(duration)
+        whole = ticks * ticking.dt
+        factor = whole / timed.clock.duration
+        demands = tuple(ticking.demands_of(_clock(timed.clock, ticks, ticking.dt, factor)))
+        q = resample(model, timed.curve, np.array([demand.s for demand in demands]), _poses(demands))
+        excess = excess_of(start, np.vstack([q, q[-1:]]), model.limits, ticking.dt)
+        broken = excess.first
+        if broken is None:
+            return PlannedMotion(q, demands, timed, factor)
+        found = Refusal(demands[min(broken.row, ticks - 1)].s, broken=broken)
+        slower = max(excess.speed, np.sqrt(excess.acceleration)) * (1.0 + _STRETCH_MARGIN)
+        duration = max(whole * slower, duration)
+        if excess.position > 0.0 or slower > _LARGEST_STRETCH:
+            break
+    return found
+
+
+def _poses(demands: Sequence[Demand]) -> Poses:
+    return Poses(
+        np.array([demand.position for demand in demands]), np.array([demand.rotation for demand in demands])
+    )
+
+
+def _clock(planned: PlannedClock, ticks: int, dt: float, factor: float) -> Clock:
+    """Whole ticks of a planned clock that runs `factor` times slower; the last one is the end."""
+    s, rate = planned.at(dt * np.arange(1.0, ticks + 1.0) / factor)
+    s[-1], rate[-1] = planned.s[-1], 0.0
+    return Clock(s, rate / factor)

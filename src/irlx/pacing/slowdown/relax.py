@@ -1,0 +1,191 @@
+"""Smooths the postures of the knots in the null space of the path.
+
+The elastic walk leaves kinks in q'(s) where bounds become active; a clock stops nearly dead at each.
+Over d_i = Z_i y_i, Z_i a basis of the null space at knot i, with both ends held (what follows in the program
+does not depend on the slowing), minimise
+
+    sum_i W |h^2 q''_i|^2 + (h / l)^4 W |q_i - q_walk,i|^2
+        + mu W (|dq_i| - 0.995 v dT_i)_+^2 + 1e5 W (position excess)_+^2,     l = tau x programmed speed,
+
+by Newton's method on the active set of the hinges (a band matrix), then back onto the path.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import solveh_banded
+
+from irlx.pacing.slowdown.grid import STEP, PathGrid
+from irlx.pacing.slowdown.model import Model, null_spaces
+
+Array = NDArray[np.float64]
+Sides = NDArray[np.int8]
+
+_SPEED_SHARE = 0.995
+_POSITION_PRICE = 1e5
+_OUTER_ROUNDS = 4
+_ACTIVE_ROUNDS = 12
+_LONGEST_STEP = 0.2
+_ONTO_PATH_ROUNDS = 2
+_SETTLED = 1e-4
+
+
+@dataclass(frozen=True)
+class Smoothing:
+    """Strength of the relaxation: wave length `tau` (s) that is smoothed away, price `mu` of speed excess."""
+
+    tau: float
+    mu: float
+
+
+def relax(
+    model: Model, grid: PathGrid, walked: Array, bounds: tuple[Array, Array], smoothing: Smoothing
+) -> Array:
+    """Smoother postures (N + 1, n) on the same poses, from those of the walk; first and last stay.
+
+    `bounds` are lower and upper positions (N + 1, n). Raises numpy.linalg.LinAlgError at singular knots.
+    """
+    if model.freedom < 1 or grid.intervals < 3:
+        return walked
+    targets = model.targets(grid.poses)
+    q, jacobians = walked, model.differences(walked, targets)[1]
+    for _ in range(_OUTER_ROUNDS):
+        step = _Relaxation(model, grid, q, null_spaces(jacobians), walked, bounds, smoothing).step()
+        moved = q.copy()
+        moved[1:-1, model.free] += step
+        moved[1:-1] = np.clip(moved[1:-1], *(side[1:-1] for side in bounds))
+        moved[1:-1, ~model.free] = walked[1:-1, ~model.free]
+        moved, _, jacobians = model.onto_path(moved, targets, _ONTO_PATH_ROUNDS)
+        moved[0], moved[-1] = walked[0], walked[-1]
+        change = float(np.max(np.abs(moved - q)))
+        q = moved
+        if change < _SETTLED:
+            break
+    return q
+
+
+class _Relaxation:
+    """One linearisation at postures q: all quantities of free joints; interior knots 1 .. N - 1."""
+
+    def __init__(
+        self,
+        model: Model,
+        grid: PathGrid,
+        q: Array,
+        basis: Array,
+        walked: Array,
+        bounds: tuple[Array, Array],
+        smoothing: Smoothing,
+    ) -> None:
+        free = model.free
+        self._weights = model.weights[free]
+        self._q, self._walked = q[:, free], walked[:, free]
+        self._lower, self._upper = bounds[0][:, free], bounds[1][:, free]
+        basis[0] = basis[-1] = 0.0
+        self._basis = basis
+        limits = model.limits
+        self._fastest = _SPEED_SHARE * limits.speed_upper[free] * grid.times[:, None]
+        self._slowest = _SPEED_SHARE * limits.speed_lower[free] * grid.times[:, None]
+        self._mu = smoothing.mu * (grid.step / STEP) ** 2
+        self._second = _second_differences(np.diff(grid.s))
+        self._attraction = (grid.step / smoothing.tau) ** 4
+
+    def step(self) -> Array:
+        """Change (N - 1, f) of the free joints at the interior knots, on the null spaces."""
+        matrix, slope = self._smooth_part()
+        change = np.zeros_like(self._q)
+        active = self._hinges(change)
+        for _ in range(_ACTIVE_ROUNDS):
+            blocks, gradient = self._with_hinges(matrix, slope, active)
+            y = _solve_blocks(*blocks, -gradient)
+            change[1:-1] = np.einsum("ifr,ir->if", self._basis[1:-1], y)
+            found = self._hinges(change)
+            if all(np.array_equal(a, b) for a, b in zip(found, active, strict=True)):
+                break
+            active = found
+        largest = float(np.max(np.abs(change), initial=0.0))
+        return change[1:-1] * min(1.0, _LONGEST_STEP / max(largest, 1e-300))
+
+    def _smooth_part(self) -> tuple[tuple[Array, Array, Array], Array]:
+        """Blocks (diagonal, first and second above) and gradient of the curvature and the attraction."""
+        z, w = self._basis, self._weights
+        before, here, after = self._second
+        knots = len(z)
+        main, next_one, next_two = np.zeros(knots), np.zeros(knots - 1), np.zeros(knots - 2)
+        np.add.at(main, np.arange(0, knots - 2), before**2)
+        np.add.at(main, np.arange(1, knots - 1), here**2)
+        np.add.at(main, np.arange(2, knots), after**2)
+        next_one[:-1] += before * here
+        next_one[1:] += here * after
+        next_two += before * after
+        main = main + self._attraction
+        blocks = tuple(
+            np.einsum("ifr,f,ifs,i->irs", z[: knots - k], w, z[k:], factor)[1 : knots - 1 - k]
+            for k, factor in enumerate((main, next_one, next_two))
+        )
+        bent = before[:, None] * self._q[:-2] + here[:, None] * self._q[1:-1] + after[:, None] * self._q[2:]
+        pull = self._attraction * (self._q - self._walked)
+        pull[:-2] += before[:, None] * bent
+        pull[1:-1] += here[:, None] * bent
+        pull[2:] += after[:, None] * bent
+        return blocks, np.einsum("ifr,f,if->ir", z, w, pull)[1:-1]
+
+    def _hinges(self, change: Array) -> tuple[Sides, Sides]:
+        """Sides on which steps pass their speed (N, f) and positions their bounds (N + 1, f): 1, 0, -1."""
+        q = self._q + change
+        steps = np.diff(q, axis=0)
+        fast = (steps > self._fastest).astype(np.int8) - (steps < self._slowest).astype(np.int8)
+        out = (q > self._upper).astype(np.int8) - (q < self._lower).astype(np.int8)
+        return fast, out
+
+    def _with_hinges(
+        self, blocks: tuple[Array, Array, Array], gradient: Array, active: tuple[Sides, Sides]
+    ) -> tuple[tuple[Array, Array, Array], Array]:
+        """The problem with the hinges in `active` as squares; `change` 0 is the point of linearisation."""
+        z, w = self._basis, self._weights
+        fast, out = active
+        main, beside, second = blocks
+        slope = np.zeros_like(self._q)
+        price_out = _POSITION_PRICE * w * (out != 0)
+        excess = np.where(out > 0, self._q - self._upper, np.where(out < 0, self._q - self._lower, 0.0))
+        slope += price_out * excess
+        diagonal = price_out
+        if self._mu > 0.0:
+            price = self._mu * w * (fast != 0)
+            steps = np.diff(self._q, axis=0)
+            over = np.where(fast > 0, steps - self._fastest, np.where(fast < 0, steps - self._slowest, 0.0))
+            slope[:-1] -= price * over
+            slope[1:] += price * over
+            diagonal = diagonal.copy()
+            diagonal[:-1] += price
+            diagonal[1:] += price
+            beside = beside - np.einsum("ifr,if,ifs->irs", z[1:-2], price[1:-1], z[2:-1])
+        main = main + np.einsum("ifr,if,ifs->irs", z[1:-1], diagonal[1:-1], z[1:-1])
+        return (main, beside, second), gradient + np.einsum("ifr,if->ir", z, slope)[1:-1]
+
+
+def _second_differences(widths: Array) -> tuple[Array, Array, Array]:
+    """Coefficients (N - 1,) of h^2 q'' at the interior knots by three points, h the mean spacing there."""
+    left, right = widths[:-1], widths[1:]
+    mean = 0.5 * (left + right)
+    before, after = mean / left, mean / right
+    return before, -(before + after), after
+
+
+def _solve_blocks(main: Array, beside: Array, second: Array, right: Array) -> Array:
+    """Solve the symmetric block band system (diagonal, first, second blocks above) for right (M, r)."""
+    count, r = right.shape
+    above = 3 * r - 1
+    band = np.zeros((above + 1, count * r))
+    for offset, blocks in enumerate((main, beside, second)):
+        starts = np.arange(len(blocks)) * r
+        for row in range(r):
+            for column in range(r):
+                distance = offset * r + column - row
+                if distance >= 0:
+                    band[above - distance, starts + offset * r + column] = blocks[:, row, column]
+    solution = solveh_banded(band, right.reshape(-1), overwrite_ab=True, check_finite=False)
+    return np.asarray(solution).reshape(count, r)

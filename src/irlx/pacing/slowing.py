@@ -1,0 +1,85 @@
+"""Where and how much a motion was slowed, and what made it slow."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irlx.pacing.slowdown.clock import PlannedClock
+from irlx.pacing.slowdown.clock_bounds import PATH, Governor
+
+Array = NDArray[np.float64]
+
+SLOWED = 0.999
+"""Share of the programmed rate below which a place counts as slowed."""
+
+
+@dataclass(frozen=True)
+class Slowing:
+    """A stretch of a motion that runs slower than programmed.
+
+    Rows `first_row` .. `last_row` of the motion (from 0). At `s` (path parameter) the rate is lowest:
+    `achieved` instead of `requested` (per s), because of the `joint` (from 0; -1 none) and its `governor`,
+    SPEED or ACCELERATION. `lost` is the time the stretch costs, s.
+    """
+
+    first_row: int
+    last_row: int
+    s: float
+    requested: float
+    achieved: float
+    governor: Governor
+    joint: int
+    lost: float
+
+
+def slowings(clock: PlannedClock, rates: Array, factor: float, dt: float, rows: int) -> tuple[Slowing, ...]:
+    """Slowed stretches of a planned clock against the programmed `rates` (N + 1,) at its knots.
+
+    `factor` is how much slower the rows, one every `dt` s, run than the clock.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.where(rates > 0.0, np.sqrt(clock.x) / rates, 1.0)
+    return tuple(_slowing(clock, rates, share, span, factor, dt, rows) for span in _spans(share < SLOWED))
+
+
+def _slowing(
+    clock: PlannedClock,
+    rates: Array,
+    share: Array,
+    span: tuple[int, int],
+    factor: float,
+    dt: float,
+    rows: int,
+) -> Slowing:
+    first, last = span
+    knots = np.arange(first, last + 1)
+    by_joint = knots[clock.joint[first : last + 1] != PATH]
+    among = by_joint if by_joint.size else knots
+    worst = int(among[np.argmin(share[among])])
+    times = clock.times * factor
+    before, behind = max(first - 1, 0), min(last + 1, len(times) - 1)
+    programmed = np.sum(
+        2.0 * np.diff(clock.s[before : behind + 1]) / (rates[before:behind] + rates[before + 1 : behind + 1])
+    )
+    ticks = np.clip(np.round(times[[first, last]] / dt).astype(int) - 1, 0, rows - 1)
+    return Slowing(
+        int(ticks[0]),
+        int(ticks[1]),
+        float(clock.s[worst]),
+        float(rates[worst]),
+        float(np.sqrt(clock.x[worst]) / factor),
+        Governor(int(clock.governor[worst])),
+        int(clock.joint[worst]),
+        float(times[behind] - times[before] - programmed),
+    )
+
+
+def _spans(mask: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
+    """First and last index of every run of True."""
+    edges = np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8))
+    for first, beyond in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
+        yield int(first), int(beyond) - 1

@@ -1,0 +1,139 @@
+"""Geometry of CIRCLE moves, rebuilt from their blocks: the circle through three points, the way along it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from irlx.blocks import ArcCourse
+from irlx.streams.joint_stream import Floats
+from irlx.streams.verify.paths import PathDeviation, line_deviation, turn_deviation
+
+LEAST_HEIGHT = 1e-7
+"""Three points that are nearer to a line than this, m, make no circle: a tenth of what a move needs."""
+
+WHOLE_TURN = 2.0 * np.pi
+
+NEARLY = 1e-6
+"""Angles, rad, by which rows may lie before the start of an arc or go back between ticks."""
+
+SHORT_WAY = 1e-6
+"""Ways shorter than this, m, come from a tiny ANGLE."""
+
+Pose = tuple[Floats, Floats]
+
+
+@dataclass(frozen=True)
+class ArcShape:
+    """A way of `travel` rad on a circle, from `start` in the direction of `forward`.
+
+    `start` (3,) m; `forward`, `inward` (3,) unit vectors at the start, along the way and to the centre;
+    `flatness` 1/radius in 1/m; `via` rad from the start to the via point, less than a whole turn.
+    """
+
+    start: Floats
+    forward: Floats
+    inward: Floats
+    flatness: float
+    via: float
+    travel: float
+
+    def angles(self, positions: Floats) -> Floats:
+        """Angle (R,) rad in -pi..pi at which the circle comes nearest to each position (R, 3).
+
+        tan = (o . forward) / (radius - o . inward), o from the start: no large numbers on flat arcs.
+        """
+        offsets = positions - self.start
+        height = 1.0 - self.flatness * (offsets @ self.inward)
+        return np.asarray(np.arctan2(self.flatness * (offsets @ self.forward), height))
+
+    def points(self, angles: Floats) -> Floats:
+        """Positions (R, 3) m after angles (R,), rad."""
+        along, rise = np.sin(angles)[:, None], 2.0 * np.sin(0.5 * angles)[:, None] ** 2
+        return np.asarray(self.start + (along * self.forward + rise * self.inward) / self.flatness)
+
+    @property
+    def end(self) -> Floats:
+        """Position (3,) m at the end of the way."""
+        return np.asarray(self.points(np.array([self.travel]))[0])
+
+
+def arc_shape(start: Floats, via: Floats, goal: Floats, angle: float | None) -> ArcShape | None:
+    """Arc from start over via to goal (3,), or by `angle` rad of it; None where the points make no circle.
+
+    The centre c solves three plane equations: half-way planes of start-via and start-goal, and the plane
+    of the three points.
+    """
+    to_via, to_goal = via - start, goal - start
+    axis = np.cross(to_via, to_goal)
+    sides = [float(np.linalg.norm(side)) for side in (to_via, to_goal, goal - via)]
+    area = float(np.linalg.norm(axis))
+    if not area > LEAST_HEIGHT * max(sides):
+        return None
+    axis = axis / area
+    rows = np.array([to_via / sides[0], to_goal / sides[1], axis])
+    centre = np.linalg.solve(rows, np.array([0.5 * sides[0], 0.5 * sides[1], 0.0]))
+    radius = float(np.linalg.norm(centre))
+    inward = centre / radius
+    # Start, via and goal follow each other counter-clockwise about the axis.
+    shape = ArcShape(start, np.cross(inward, axis), inward, 1.0 / radius, 0.0, 0.0)
+    at_via, at_goal = (float(a) % WHOLE_TURN for a in shape.angles(np.array([via, goal])))
+    if angle is not None and angle < 0.0:
+        return ArcShape(start, -shape.forward, inward, 1.0 / radius, WHOLE_TURN - at_via, -angle)
+    travel = at_goal if angle is None else angle
+    return ArcShape(start, shape.forward, inward, 1.0 / radius, at_via, travel)
+
+
+def arc_deviation(
+    shape: ArcShape,
+    course: ArcCourse,
+    rotations: tuple[Floats, Floats, Floats],
+    rows: Pose,
+    most_step: float,
+) -> PathDeviation:
+    """Deviation of rows (positions (R, 3), rotations (R, 3, 3)) of a move from its arc.
+
+    `rotations` are those at start, via and end, (3, 3); `most_step` is the largest angle, rad, that the
+    program's speed allows between rows: it tells in which round of a circle a row lies.
+    """
+    start, via, goal = rotations
+    if shape.travel < SHORT_WAY * shape.flatness:
+        # So short a way is its own chord, and too short to take the share of a turn from.
+        return line_deviation((shape.start, start), (shape.end, goal), *rows)
+    angles = _rounds(shape.angles(rows[0]), most_step)
+    inside = np.clip(angles, 0.0, shape.travel)
+    share = inside / shape.travel
+    if course.turns_through_via:
+        before = inside < shape.via
+        part = shape.via / shape.travel
+        off_turn = np.where(
+            before,
+            turn_deviation(start, via, _eased(share / part), rows[1], before),
+            turn_deviation(via, goal, 1.0 - _eased((1.0 - share) / (1.0 - part)), rows[1], ~before),
+        )
+    else:
+        off_turn = turn_deviation(start, goal, share, rows[1])
+    off_circle = np.linalg.norm(rows[0] - shape.points(inside), axis=1)
+    # Of rows more than a whole turn apart nobody can tell how many turns they make.
+    travel = shape.travel if most_step < WHOLE_TURN else float(inside[-1])
+    return PathDeviation(off_circle, off_turn, inside / shape.flatness, travel / shape.flatness)
+
+
+def _rounds(angles: Floats, most_step: float) -> Floats:
+    """Angles (R,) from the start on, whole turns added so that no step is larger than `most_step`.
+
+    A step is taken for one back only where that is the shorter way; where rows may be more than half a
+    turn apart, for one forward. Rows that may be more than a whole turn apart cannot be told.
+    """
+    back = float(np.clip(WHOLE_TURN - most_step, NEARLY, np.pi))
+    steps = np.diff(angles, prepend=0.0)
+    return np.asarray(np.cumsum((steps + back) % WHOLE_TURN - back))
+
+
+def _eased(way: Floats) -> Floats:
+    """Share of a turn (R,) at a share of its way: steady over the first half, coming to rest in the second.
+
+    With rate 4/3 up to 1/2, falling linearly to 0 at 1: u = 4/3 x, then 1 - 4/3 (1 - x)^2.
+    """
+    return np.asarray(np.where(way < 0.5, 4.0 / 3.0 * way, 1.0 - 4.0 / 3.0 * (1.0 - way) ** 2))

@@ -1,0 +1,234 @@
+"""The posture flow: stays on the pose and inside, comes nearer with every point, ends at an optimum."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize
+
+from irlx.robot.limits import JointLimits
+from irlx.transform.posture_flow import FlowEnd, posture_flow, projected_gradient
+from irlx.transform.qp.dual import DualSolver
+from irlx.transform.qp.proxqp import ProxQpSolver
+
+OPTIMAL = 1e-8
+ON_POSE = 1e-12
+
+
+def limits_of(arm):
+    return JointLimits.unlimited(arm.n).with_pair("position", arm.lower, arm.upper)
+
+
+def flow_of(arm, q, konf, free=None, limits=None, qp=None):
+    free = np.ones(arm.n, dtype=bool) if free is None else free
+    limits = limits_of(arm) if limits is None else limits
+    return posture_flow(arm.kinematics, q, konf, arm.weights, limits, free, qp or DualSolver())
+
+
+def drawn(arm, rng, scale=1.0):
+    return rng.uniform(np.maximum(arm.lower, -3.0), np.minimum(arm.upper, 3.0)) * scale
+
+
+def pose_errors(arm, q, points):
+    target = arm.pose(q)
+    return np.array([np.max(np.abs(arm.kinematics.difference(point, target)[0])) for point in points])
+
+
+def assert_good(arm, q, konf, free, flow, lower=None, upper=None):
+    """All that is promised of any flow."""
+    points = flow.points
+    lower, upper = arm.lower if lower is None else lower, arm.upper if upper is None else upper
+    assert points[0].tobytes() == q.tobytes()
+    assert np.all(points[:, ~free] == q[~free])
+    assert np.all((points >= lower) & (points <= upper))
+    assert pose_errors(arm, q, points).max() <= ON_POSE
+    assert flow.end in (FlowEnd.KONF, FlowEnd.NEAREST), flow
+    assert flow.projected_gradient < OPTIMAL
+    away = ((points - konf) ** 2 * arm.weights)[:, free].sum(axis=1)
+    assert np.max(np.diff(away), initial=-1.0) <= 1e-12 * (1.0 + away[0])
+    assert np.max(np.abs(flow.remaining - (konf - points[-1]))) <= 2e-12
+    if len(points) > 1:
+        assert_even(points)
+
+
+def assert_even(points):
+    """Spacing as promised, and no way turned by more than a quarter of a right angle from point to point."""
+    steps = np.diff(points, axis=0)
+    lengths = np.linalg.norm(steps, axis=1)
+    assert lengths.max() <= 0.03
+    assert lengths.max() <= 1.5 * lengths.min()
+    if lengths.max() > 1e-6:
+        ways = steps / lengths[:, None]
+        assert np.min(np.sum(ways[1:] * ways[:-1], axis=1)) > np.cos(np.pi / 8)
+
+
+@pytest.mark.req("TRF-05")
+@pytest.mark.req("TRF-15")
+@pytest.mark.parametrize(("name", "seeds"), [("arm7", range(140)), ("koch11", range(60))])
+def test_random_postures(name, seeds, request):
+    arm = request.getfixturevalue(name)
+    most_frozen = arm.n - 7
+    for seed in seeds:
+        rng = np.random.default_rng([seed, arm.n])
+        q, konf = drawn(arm, rng), drawn(arm, rng, 1.3 if seed % 3 == 0 else 1.0)
+        free = np.ones(arm.n, dtype=bool)
+        if seed % 4 == 1:
+            joint = int(rng.integers(arm.n))
+            q[joint] = arm.lower[joint] if seed % 8 == 1 else arm.upper[joint]
+        if seed % 4 == 2 and most_frozen > 0:
+            free[rng.choice(arm.n, int(rng.integers(1, most_frozen + 1)), replace=False)] = False
+        try:
+            assert_good(arm, q, konf, free, flow_of(arm, q, konf, free))
+        except AssertionError:
+            print(f"{name}: seed {seed}")
+            raise
+
+
+@pytest.mark.req("TRF-15")
+def test_a_posture_on_the_fibre_is_reached_to_the_last_bit(arm):
+    free = np.ones(arm.n, dtype=bool)
+    for seed in range(20):
+        rng = np.random.default_rng([seed, 3])
+        q = arm.q
+        way = flow_of(arm, q, drawn(arm, rng)).points
+        konf = way[min(len(way) - 1, 25)].copy()
+        flow = flow_of(arm, q, konf)
+        assert_good(arm, q, konf, free, flow)
+        assert flow.reached, seed
+        assert flow.end is FlowEnd.KONF
+        # Values that mean those of the start are those of the start: nothing moves for rounding.
+        meant = np.where(np.abs(konf - q) <= 1e-12, q, konf)
+        assert flow.points[-1].tobytes() == meant.tobytes()
+        assert np.all(flow.remaining == 0.0)
+
+
+def test_a_posture_almost_on_the_fibre_is_not_taken_over(arm):
+    way = flow_of(arm, arm.q, drawn(arm, np.random.default_rng(8))).points
+    konf = way[len(way) // 2].copy()
+    konf[0] += 1e-7
+    flow = flow_of(arm, arm.q, konf)
+    assert flow.reached
+    assert np.any(flow.points[-1] != konf)
+    assert pose_errors(arm, arm.q, flow.points).max() <= ON_POSE
+
+
+@pytest.mark.parametrize("residue", [0.0, 1e-16, -3e-16, 1e-13])
+def test_nothing_moves_towards_the_present_posture(arm, residue):
+    flow = flow_of(arm, arm.q, arm.q + residue)
+    assert len(flow.points) == 1
+    assert flow.reached
+    assert flow.points[0].tobytes() == arm.q.tobytes()
+
+
+def test_the_end_does_not_depend_on_the_qp_solver(arm):
+    rng = np.random.default_rng(21)
+    for _ in range(5):
+        konf = drawn(arm, rng, 1.2)
+        one, other = (flow_of(arm, arm.q, konf, qp=qp) for qp in (DualSolver(), ProxQpSolver()))
+        assert np.max(np.abs(one.points[-1] - other.points[-1])) <= 1e-8
+
+
+@pytest.mark.req("TRF-05")
+def test_another_solver_finds_no_nearer_posture(arm):
+    """SLSQP, started beside the end, comes back to it."""
+    free = np.ones(arm.n, dtype=bool)
+    for seed in range(4):
+        rng = np.random.default_rng([seed, 77])
+        konf = drawn(arm, rng, 1.2 if seed % 2 else 1.0)
+        flow = flow_of(arm, arm.q, konf)
+        assert_good(arm, arm.q, konf, free, flow)
+        end, target = flow.points[-1], arm.pose(arm.q)
+        found = minimize(
+            lambda x, k=konf: 0.5 * (arm.weights * (x - k)) @ (x - k),
+            np.clip(end + rng.normal(size=arm.n) * 1e-3, arm.lower, arm.upper),
+            jac=lambda x, k=konf: arm.weights * (x - k),
+            bounds=list(zip(arm.lower, arm.upper, strict=True)),
+            constraints={
+                "type": "eq",
+                "fun": lambda x, t=target: arm.kinematics.difference(x, t)[0],
+                "jac": lambda x, t=target: arm.kinematics.difference_derivative(x, t)[1],
+            },
+            method="SLSQP",
+            options={"ftol": 1e-15, "maxiter": 500},
+        )
+        best = 0.5 * (arm.weights * (end - konf)) @ (end - konf)
+        assert found.fun >= best - 1e-7 * (1.0 + best), seed
+        assert np.max(np.abs(found.x - end)) < 2e-3, seed
+
+
+def test_narrow_limits_hold_and_are_left(arm):
+    """A joint pressed against its limit stays on it to the last bit; one that may leave it leaves."""
+    rng = np.random.default_rng(4)
+    for _ in range(5):
+        lower, upper = arm.q - 0.05, arm.q + 0.05
+        lower[arm.n - 2] = arm.q[arm.n - 2]
+        limits = limits_of(arm).with_pair("position", lower, upper)
+        konf = arm.q + rng.normal(size=arm.n)
+        flow = flow_of(arm, arm.q, konf, limits=limits)
+        assert_good(arm, arm.q, konf, np.ones(arm.n, dtype=bool), flow, lower, upper)
+
+
+@pytest.mark.parametrize("far", [1e2, 1e5, 1e300])
+def test_a_posture_far_beyond_everything(arm, far):
+    """Only the direction counts; the flow ends, within the limits, and says what is left."""
+    konf = far * np.random.default_rng(3).normal(size=arm.n)
+    flow = flow_of(arm, arm.q, konf)
+    assert flow.end is FlowEnd.NEAREST
+    assert pose_errors(arm, arm.q, flow.points).max() <= ON_POSE
+    assert np.all((flow.points >= arm.lower) & (flow.points <= arm.upper))
+    assert np.array_equal(flow.remaining, konf - flow.points[-1])
+
+
+def test_frozen_to_the_last_spare_joint_nothing_moves(arm7):
+    free = np.ones(7, dtype=bool)
+    free[2] = False
+    flow = flow_of(arm7, arm7.q, np.zeros(7), free)
+    assert len(flow.points) == 1
+    assert not flow.reached
+    assert np.array_equal(flow.remaining, -arm7.q)
+
+
+def test_a_ridge_is_left(arm):
+    """Where the distance is level at the start but highest across, the flow leaves to one side."""
+    free = np.ones(arm.n, dtype=bool)
+    jacobian = np.array(arm.kinematics.difference(arm.q, arm.pose(arm.q))[1])
+    left = 0
+    for seed in range(20):
+        force = np.random.default_rng([seed, 9]).normal(size=6) * 40.0
+        konf = arm.q + jacobian.T @ force / arm.weights
+        given = arm.kinematics, arm.q, konf, arm.weights, limits_of(arm), free
+        assert projected_gradient(*given) < 1e-12
+        flow = flow_of(arm, arm.q, konf)
+        assert_good(arm, arm.q, konf, free, flow)
+        left += len(flow.points) > 10
+    assert left > 0
+
+
+def test_a_singular_start_ends_with_a_reason(arm7):
+    """Stretched out, the arm has lost a direction: whatever comes out is on the pose and inside."""
+    q = np.zeros(7)
+    konf = np.array([0.3, 0.4, -0.2, 0.5, 0.1, 0.2, 0.3])
+    flow = flow_of(arm7, q, konf)
+    assert flow.end in FlowEnd
+    assert pose_errors(arm7, q, flow.points).max() <= ON_POSE
+    assert np.all((flow.points >= arm7.lower) & (flow.points <= arm7.upper))
+
+
+def test_projected_gradient_is_the_slope_along_the_fibre(arm7):
+    """Against differences of the distance along the one tangent of a 7-axis arm."""
+    konf = np.array([0.1, 0.2, -1.0, 1.1, 0.9, -0.3, 0.2])
+    free = np.ones(7, dtype=bool)
+    _, jacobian = arm7.kinematics.difference(arm7.q, arm7.pose(arm7.q))
+    way = np.linalg.svd(np.array(jacobian))[2][-1]
+    slope = way @ (arm7.weights * (arm7.q - konf))
+    expected = abs(slope) * np.max(np.abs(way))
+    found = projected_gradient(arm7.kinematics, arm7.q, konf, arm7.weights, limits_of(arm7), free)
+    assert abs(found - expected) < 1e-12
+    # Pressed against a limit the only way is closed.
+    joint = int(np.argmax(np.abs(way)))
+    outward = -np.sign(slope * way[joint])
+    side = "position"
+    lower, upper = arm7.lower.copy(), arm7.upper.copy()
+    (upper if outward > 0 else lower)[joint] = arm7.q[joint]
+    held = replace(limits_of(arm7)).with_pair(side, lower, upper)
+    assert projected_gradient(arm7.kinematics, arm7.q, konf, arm7.weights, held, free) == 0.0
