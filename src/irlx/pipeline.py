@@ -20,9 +20,9 @@ from irlx.cell.load import load_cell
 from irlx.diagnostics import Diagnostic, IrlxError, Place, Span, report
 from irlx.interpreter.interpret import interpret
 from irlx.interpreter.setting import Setting
-from irlx.pacing.pacer import Pacer, PacingSetup
 from irlx.pacing.explanation import TickExplanation
 from irlx.pacing.explanation import explain_tick as explain_row
+from irlx.pacing.pacer import Pacer, PacingSetup
 from irlx.pacing.rows import MotionRows
 from irlx.program import Program, ProgramError, cell_path, load
 from irlx.report.recording import Recording
@@ -222,8 +222,9 @@ def run(
 
     `cell`: path of the cell file, by default found beside the program; `tick_ms` overrides the
     cell's tick; `explain_tick` asks for `Run.explanation` of that tick; a move that limits make
-    more than `max_slow` times as long as programmed is an error. Raises ProgramError and CellError before anything moves, RunError (with what was
-    executed until then) once it does, RunInterrupted on Ctrl-C.
+    more than `max_slow` times as long as programmed is an error. Raises ProgramError and
+    CellError before anything moves, RunError (with what was executed until then) once it does,
+    RunInterrupted on Ctrl-C.
     """
     job = prepare(program, cell, tick_ms, max_slow)
     return execute(job, progress, explain_tick)

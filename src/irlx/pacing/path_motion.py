@@ -17,7 +17,7 @@ from irlx.pacing.slowdown.model import Model
 from irlx.pacing.slowdown.planned import MotionTask, PlannedMotion, Refusal, Ticking, plan_motion
 from irlx.pacing.slowing import Slowing, slowings
 from irlx.pacing.touching import touching
-from irlx.pacing.walk import Halt, walk
+from irlx.pacing.walk import Halt, Walk, walk
 from irlx.transform.step_bounds import BoundSource, StepLimiter
 from irlx.transform.tick import TickSolver
 
@@ -72,6 +72,25 @@ class PathMotion:
 
 def pace_path(motion: PathMotion, model: Model, solver: TickSolver) -> PacedPath | Failure:
     """Rows of a motion: at the programmed speed where every tick can, else slowed where it must be."""
+    walked, broken = _walked(motion, model, solver, thorough=False)
+    kept = walked.halt is None and broken is None
+    if kept and not (motion.term.draws and _rings(walked.active)):
+        return _as_walked(walked)
+    found = plan_motion(model, _task(motion))
+    if not isinstance(found, Refusal):
+        return _planned(motion, model, found)
+    if not kept:
+        # Where no plan is found a walk that looks round every corner may still be.
+        walked, broken = _walked(motion, model, solver, thorough=True)
+    if walked.halt is None and broken is None:
+        return _as_walked(walked)
+    return Failure(walked.halt, broken, found)
+
+
+def _walked(
+    motion: PathMotion, model: Model, solver: TickSolver, thorough: bool
+) -> tuple[Walk, BrokenBound | None]:
+    """The walk at the programmed speed, and the first bound that its rows pass."""
     clock = programmed_clock(motion.plan.law, motion.plan.ticks, motion.dt)
     walked = walk(
         solver,
@@ -80,14 +99,20 @@ def pace_path(motion: PathMotion, model: Model, solver: TickSolver) -> PacedPath
         model.free,
         motion.start,
         motion.demands_of(clock),
+        thorough,
     )
-    broken = None
-    if walked.halt is None:
-        held = np.vstack([walked.q, walked.q[-1:]])
-        broken = broken_bound(motion.start, held, model.limits, motion.dt)
-        if broken is None and not (motion.term.draws and _rings(walked.active)):
-            return PacedPath(walked.q, walked.active, walked.demands, walked.iterations)
-    task = MotionTask(
+    if walked.halt is not None:
+        return walked, None
+    held = np.vstack([walked.q, walked.q[-1:]])
+    return walked, broken_bound(motion.start, held, model.limits, motion.dt)
+
+
+def _as_walked(walked: Walk) -> PacedPath:
+    return PacedPath(walked.q, walked.active, walked.demands, walked.iterations)
+
+
+def _task(motion: PathMotion) -> MotionTask:
+    return MotionTask(
         motion.plan.path,
         motion.plan.programmed,
         motion.plan.programmed.acc,
@@ -95,12 +120,6 @@ def pace_path(motion: PathMotion, model: Model, solver: TickSolver) -> PacedPath
         motion.term.at,
         Ticking(motion.dt, motion.ticks_of, motion.demands_of),
     )
-    found = plan_motion(model, task)
-    if isinstance(found, Refusal):
-        if walked.halt is None and broken is None:
-            return PacedPath(walked.q, walked.active, walked.demands, walked.iterations)
-        return Failure(walked.halt, broken, found)
-    return _planned(motion, model, found)
 
 
 def _planned(motion: PathMotion, model: Model, found: PlannedMotion) -> PacedPath:

@@ -52,11 +52,12 @@ def walk(
     free: NDArray[np.bool_],
     start: Array,
     demands: Iterable[Demand],
+    thorough: bool = True,
 ) -> Walk:
     """Walk from rest at posture `start` (n,) through the demands, one tick each.
 
     `limiter` holds the limits in force, `criterion_of` gives the criterion of a tick, `free` (n,) is True
-    for the joints that are not frozen.
+    for the joints that are not frozen, `thorough` is that of `TickSolver.solve`.
     """
     q, speed = start, np.zeros_like(start)
     joints = start.size
@@ -71,7 +72,7 @@ def walk(
         bounds = limiter.bounds(q, speed)
         target = solver.kinematics.target(demand.rotation, demand.position)
         problem = TickProblem(target, q, bounds, criterion_of(demand), free)
-        solution = solver.solve(problem, seeds.next())
+        solution = solver.solve(problem, seeds.next(), thorough)
         iterations += solution.iterations
         if not solution.solved:
             halt = Halt(demand, bounds, solution)

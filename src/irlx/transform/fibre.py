@@ -29,6 +29,8 @@ _LEFT_ON_POSE = 1e-12
 _CORRECTIONS = 12
 _LONGEST_CORRECTION = 0.5
 _DIFFERENCE = 1e-5
+_UNMOVED = 1e-9
+_BACK_INSIDE = 1e-13
 
 
 @dataclass(frozen=True)
@@ -72,6 +74,10 @@ class Fibre:
         self._qp = DualSolver()
         self._reach = max(1.0, kinematics.description.reach)
 
+    def within(self, lower: Array, upper: Array) -> Fibre:
+        """The same fibre within other position limits (n,)."""
+        return Fibre(self.kinematics, self.target, self.konf, self.weights, (lower, upper), self.free)
+
     def distance(self, q: Array) -> float:
         """1/2 (q - k)' W (q - k) of the free joints."""
         away = (q - self.konf)[self.free]
@@ -86,27 +92,43 @@ class Fibre:
     def onto_pose(self, q: Array, movable: NDArray[np.bool_] | None = None) -> Array | None:
         """Posture on the pose by W-least Newton steps from q (n,), within limits; None where they fail.
 
-        Only `movable` joints (n,) step, by default all free ones.
+        Only `movable` joints (n,) step, by default all free ones. Where the limits leave a single step no
+        way, a joint may pass its own on the way and has to be back at the end: the elbow of an arm with
+        spherical shoulder and wrist does so when it stands on its limit.
         """
         free = self.free if movable is None else movable
         found = np.where(self.free, np.clip(q, self.lower, self.upper), q)
-        least = np.inf
+        inside = self._newton(found, free, (self.lower, self.upper))
+        if inside is not None:
+            return inside
+        nowhere = np.full(q.size, np.inf)
+        found = self._newton(found, free, (-nowhere, nowhere))
+        if found is None:
+            return None
+        back = np.where(free, np.clip(found, self.lower, self.upper), found)
+        return back if float(np.max(np.abs(back - found))) <= _BACK_INSIDE else None
+
+    def _newton(self, q: Array, free: NDArray[np.bool_], bounds: tuple[Array, Array]) -> Array | None:
+        """Posture on the pose by steps of the joints `free` (n,) that keep `bounds`; None where they fail."""
+        found, least = q, np.inf
         for _ in range(_CORRECTIONS):
             twist, jacobian = self.kinematics.difference(found, self.target)
             error = float(np.max(np.abs(twist)))
             if error <= ON_POSE or (error <= _LEFT_ON_POSE * self._reach and error >= 0.5 * least):
                 return found
             least = min(least, error)
-            step = self._correction(found, twist, jacobian, free)
+            room = (bounds[0] - found)[free], (bounds[1] - found)[free]
+            step = self._correction(twist, jacobian, free, room)
             if step is None or float(np.max(np.abs(step), initial=0.0)) > _LONGEST_CORRECTION:
                 return None
             moved = found.copy()
             moved[free] += step
-            found = np.where(free, np.clip(moved, self.lower, self.upper), found)
+            found = np.where(free, np.clip(moved, *bounds), found)
         return None
 
-    def _correction(self, q: Array, twist: Array, jacobian: Array, free: NDArray[np.bool_]) -> Array | None:
-        room = (self.lower - q)[free], (self.upper - q)[free]
+    def _correction(
+        self, twist: Array, jacobian: Array, free: NDArray[np.bool_], room: tuple[Array, Array]
+    ) -> Array | None:
         weights = self.weights[free]
         problem = StepProblem(jacobian[:, free], twist, np.zeros(weights.size), weights, *room)
         try:
@@ -114,7 +136,8 @@ class Fibre:
             if within(step, *room):
                 return step
             bounded = bounded_step(problem, step, self._qp)
-        except np.linalg.LinAlgError:
+        except (np.linalg.LinAlgError, ArithmeticError):
+            # Bounds that leave no way back: the solver may also find an answer that keeps them not quite.
             return None
         return None if bounded is None else bounded.d
 
@@ -138,11 +161,15 @@ class Fibre:
         basis = self._basis(jacobian, self.free)
         if basis.shape[1] == 0:
             return pressed
+        # What no motion along the fibre moves, as the elbow of an arm with spherical shoulder and wrist, is not
+        # pressed: held back by rounding alone it would hold all the others.
+        lengths = np.max(np.abs(basis), axis=1)
+        turning = self.free & (lengths > _UNMOVED * float(np.max(lengths)))
         descent = -basis @ (basis.T @ gradient)
         lower = np.where(at_lower, 0.0, -np.inf) - descent
         upper = np.where(at_upper, 0.0, np.inf) - descent
         # Steepest descent within the cone that the limits leave: its held joints are the pressed ones.
-        pressed[self.free] = self._qp.solve(basis[self.free], lower[self.free], upper[self.free]).active != 0
+        pressed[turning] = self._qp.solve(basis[turning], lower[turning], upper[turning]).active != 0
         return pressed
 
     def _basis(self, jacobian: Array, movable: NDArray[np.bool_]) -> Array:

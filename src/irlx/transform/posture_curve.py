@@ -17,17 +17,25 @@ SPACING = 0.02
 LEAST_PIECES = 8
 """Pieces of the shortest curve: a spline wants some points."""
 
+RESERVE = 1e-4
+"""Distance (rad or m) that the curve keeps from position limits between its ends."""
+
 _THINNED = 0.3
 _PASSES = 16
+_LEAD = 12
+_OF_WIDTH = 0.25
+_OF_WAY = 1e-3
+_STILL = 1e-9
 
 
-def even_curve(fibre: Fibre, iterates: Array, stride: float) -> Array:
+def even_curve(fibre: Fibre, iterates: Array, stride: float, reserve: float = RESERVE) -> Array:
     """Points (K, n) of the curve through iterates (M, n), M >= 2, evenly spaced by arc length.
 
     Iterates closer than 0.3 `stride` are passed over; a cubic spline through the others gives the points, a
     binomial mean over some 0.06 rad|m rounds the corners where a joint met its limit, and Newton steps within
-    the limits lead each onto the pose. First and last are kept bit by bit. Where a correction fails, the
-    iterates themselves are returned.
+    the limits lead each onto the pose. First and last are kept bit by bit. A spline through points that lie
+    on a limit swings beyond it between them: inner points keep `reserve` (rad or m) away, see `_kept`.
+    Where a correction fails, the iterates themselves are returned.
     """
     from scipy.interpolate import make_interp_spline
 
@@ -36,16 +44,30 @@ def even_curve(fibre: Fibre, iterates: Array, stride: float) -> Array:
     pieces = max(LEAST_PIECES, ceil(way[-1] / SPACING))
     due = np.linspace(0.0, way[-1], pieces + 1)
     spline = make_interp_spline(way, knots, k=3 if len(knots) >= 4 else 1)
-    still = np.all(knots == knots[0], axis=0)
-    points = _rounded(np.clip(spline(due), fibre.lower, fibre.upper))
+    still = np.ptp(iterates, axis=0) <= _STILL
+    lower, upper = _kept(fibre, pieces + 1, min(reserve, _OF_WAY * float(way[-1])), still)
+    points = _rounded(np.clip(spline(due), lower, upper))
     points[:, still] = knots[0, still]
     curve = [iterates[0]]
-    for point in points[1:-1]:
-        corrected = fibre.onto_pose(point)
+    for point, low, high in zip(points[1:-1], lower[1:-1], upper[1:-1], strict=True):
+        corrected = fibre.within(low, high).onto_pose(point)
+        if corrected is None:
+            corrected = fibre.onto_pose(point)
         if corrected is None:
             return iterates
         curve.append(corrected)
     return np.array([*curve, iterates[-1]])
+
+
+def _kept(fibre: Fibre, points: int, reserve: float, still: NDArray[np.bool_]) -> tuple[Array, Array]:
+    """Lower and upper positions (points, n): the limits less the reserve, which is nothing at both ends and
+    full from the twelfth point on, for a narrow range at most a quarter of it, for joints that stand `still`
+    (n,) nothing: the others may have no way that would move them."""
+    index = np.arange(points)
+    ramp = np.minimum(np.minimum(index, points - 1 - index) / _LEAD, 1.0)[:, None]
+    kept = ramp * np.minimum(reserve, _OF_WIDTH * (fibre.upper - fibre.lower))
+    kept[:, still] = 0.0
+    return fibre.lower + kept, fibre.upper - kept
 
 
 def _rounded(points: Array) -> Array:

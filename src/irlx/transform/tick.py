@@ -85,12 +85,14 @@ class TickSolver:
         self.reach = kinematics.description.reach
         self._qp = qp
 
-    def solve(self, problem: TickProblem, seed: Array | None = None) -> TickSolution:
+    def solve(self, problem: TickProblem, seed: Array | None = None, thorough: bool = True) -> TickSolution:
         """Find the posture on the demanded pose that makes the criterion smallest within the bounds.
 
         A tick is solved once a Newton step starts from a pose error within tolerance and leaves less
         than `SETTLED_ERROR` of the criterion's minimum: that last step squares what was left of the pose.
-        `seed` (n,) is a guess of the whole step; it saves Newton steps and decides nothing.
+        `seed` (n,) is a guess of the whole step; it saves Newton steps and decides nothing. Without
+        `thorough` a tick counts as unsolved where Newton's steps find nothing; what is left then is not
+        looked for.
         """
         start = np.zeros(problem.q.size) if seed is None else seed
         found = self._undisturbed(problem, start)
@@ -105,6 +107,9 @@ class TickSolver:
             first = self._newton(problem, np.zeros(problem.q.size))
         if isinstance(first, TickSolution):
             return first
+        if not thorough:
+            nothing = np.zeros(problem.q.size, dtype=np.int8)
+            return TickSolution(first, problem.q, nothing, np.zeros(6), self._max_iterations)
         # Bounds can close the way that the first linear step sees and leave another one open.
         nearest = self._nearest(problem)
         if _met(nearest.twist):

@@ -38,8 +38,8 @@ PACING = (
     ),
     warning(
         "IRL350",
-        "RECONFIGURATION asks for {joint} at {value}, outside its limits {lower} to {upper}; it is led to the "
-        "nearest posture inside",
+        "RECONFIGURATION asks for {joint} at {value}, outside its limits {lower} to {upper}; it is led to "
+        "the nearest posture inside",
         "choose a value inside the limits, or end the JOINTLIMIT before",
     ),
     error(

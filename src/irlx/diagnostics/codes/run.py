@@ -40,14 +40,14 @@ RUN = (
     ),
     error(
         "IRL524",
-        "the tool would have to stand still at {way} of {length}: no slower clock gets {bound} over this place; "
-        "smallest singular value {sigma}",
+        "the tool would have to stand still at {way} of {length}: no slower clock gets {bound} over this "
+        "place; smallest singular value {sigma}",
         "widen the limit, or start the move from another posture (RECONFIGURATION before it)",
     ),
     error(
         "IRL525",
-        "the joints' limits make this move take {duration} s instead of {programmed} s, {factor} times as long; "
-        "{allowed} times is allowed",
+        "the joints' limits make this move take {duration} s instead of {programmed} s, {factor} times "
+        "as long; {allowed} times is allowed",
         "widen the limits, start from another posture, or allow more (--max-slow)",
     ),
     error(

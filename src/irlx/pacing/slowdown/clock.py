@@ -56,32 +56,36 @@ class PlannedClock:
         return np.clip(s, self.s[i], self.s[i + 1]), np.maximum(rate + u * since, 0.0)
 
 
-def plan_clock(bounds: ClockBounds, start_rate: float = 0.0, end_rate: float = 0.0) -> PlannedClock | None:
+def plan_clock(
+    bounds: ClockBounds, start_rate: float = 0.0, end_rate: float = 0.0, slack: float = _ENTRY_SLACK
+) -> PlannedClock | None:
     """Fastest clock that keeps all bounds, entered and left at the given rates ds/dt.
 
-    It may begin at any knot of a motion (see `ClockBounds.part`), so a motion can be planned anew
-    from wherever it is. None where the entry is too fast to slow down in time.
+    It may begin at any knot of a motion (see `ClockBounds.part`; `replan` between knots). None where
+    the entry is too fast: its squared rate above what can still slow down by more than the share `slack`.
     """
     x, governor, joint = bounds.cap.copy(), bounds.governor.copy(), bounds.joint.copy()
     x[-1] = min(x[-1], end_rate**2)
     _backward(x, governor, joint, bounds)
-    if start_rate**2 > x[0] * (1.0 + _ENTRY_SLACK):
+    if start_rate**2 > x[0] * (1.0 + slack):
         return None
     x[0] = start_rate**2
     _forward(x, governor, joint, bounds)
     return PlannedClock(bounds.s, x, governor, joint)
 
 
-def stopping_clock(bounds: ClockBounds, knot: int, rate: float) -> PlannedClock | None:
+def stopping_clock(
+    bounds: ClockBounds, knot: int, rate: float, slack: float = _ENTRY_SLACK
+) -> PlannedClock | None:
     """Clock that leaves `knot` at `rate` and comes to rest on the path at the first knot it can.
 
     None where the rate is too fast for a stop anywhere.
     """
     low, high = knot + 1, len(bounds.s) - 1
-    best = plan_clock(bounds.part(knot, high), start_rate=rate)
+    best = plan_clock(bounds.part(knot, high), rate, slack=slack)
     while best is not None and low < high:
         middle = (low + high) // 2
-        sooner = plan_clock(bounds.part(knot, middle), start_rate=rate)
+        sooner = plan_clock(bounds.part(knot, middle), rate, slack=slack)
         if sooner is None:
             low = middle + 1
         else:

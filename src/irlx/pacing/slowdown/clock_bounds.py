@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,13 +23,22 @@ Array = NDArray[np.float64]
 Joints = NDArray[np.int16]
 
 _FRACTIONS = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
-_SPEED_RESERVE = 1e-5
-_ACCELERATION_RESERVE = 1e-3
 _NO_SLOPE = 1e-12
 _CHUNK = 64
 
 PATH = -1
 """Stands for the path itself where a joint's number (from 0) is expected."""
+
+
+class Reserves(NamedTuple):
+    """Parts of the speed and acceleration bounds that a clock leaves unused."""
+
+    speed: float
+    acceleration: float
+
+
+PLANNED = Reserves(1e-5, 1e-3)
+"""Reserves of a motion's first clock."""
 
 
 class Governor(IntEnum):
@@ -72,29 +82,40 @@ class ClockBounds:
         )
 
 
-def clock_bounds(curve: JointCurve, limits: JointLimits, rates: Array, acc: float) -> ClockBounds:
+def clock_bounds(
+    curve: JointCurve,
+    limits: JointLimits,
+    rates: Array,
+    acc: float,
+    knots: Array | None = None,
+    reserves: Reserves = PLANNED,
+) -> ClockBounds:
     """Bounds on a curve under joint limits, a programmed rate ds/dt (N + 1,), and |d2s/dt2| <= acc.
 
-    Accelerations keep a reserve of 1E-3, speeds of 1E-5, for what happens between the points.
+    `knots` (N + 1,) of the clock are those of the curve where they are not given; `reserves` are kept for
+    what happens between the points.
     """
-    widths = np.diff(curve.s)
-    at = (curve.s[:-1, None] + widths[:, None] * _FRACTIONS).ravel()
+    s = curve.s if knots is None else knots
+    widths = np.diff(s)
+    at = (s[:-1, None] + widths[:, None] * _FRACTIONS).ravel()
     shape = (widths.size, _FRACTIONS.size, curve.q.shape[1])
     first, second = (part.reshape(shape) for part in curve.derivatives(at))
-    cap, governor, joint = _speed_caps(first, limits, rates)
-    lines = _lines(first, second, widths, limits, acc)
+    cap, governor, joint = _speed_caps(first, limits, rates, reserves.speed)
+    lines = _lines(first, second, widths, limits, acc, reserves.acceleration)
     _lower_cap(cap, governor, joint, *lines[4:], Governor.ACCELERATION)
     top, bottom, slope, line_joint = lines[:4]
     _lower_cap(cap, governor, joint, *_meeting_points(top, bottom, slope, line_joint), Governor.ACCELERATION)
-    return ClockBounds(curve.s, cap, governor, joint, top, bottom, slope, line_joint)
+    return ClockBounds(s, cap, governor, joint, top, bottom, slope, line_joint)
 
 
-def _speed_caps(first: Array, limits: JointLimits, rates: Array) -> tuple[Array, NDArray[np.int8], Joints]:
+def _speed_caps(
+    first: Array, limits: JointLimits, rates: Array, reserve: float
+) -> tuple[Array, NDArray[np.int8], Joints]:
     """x at the knots by the programmed rate and by the joints' speeds in both intervals beside a knot."""
-    keep = 1.0 - _SPEED_RESERVE
+    keep = 1.0 - reserve
     fastest = np.where(first > 0.0, limits.speed_upper, -limits.speed_lower) * keep
     steep = np.abs(first)
-    with np.errstate(divide="ignore", over="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         squares = np.where(steep > 0.0, fastest / steep, np.inf) ** 2
     of_joint = squares.min(axis=1)
     worst = np.argmin(of_joint, axis=1)
@@ -115,11 +136,11 @@ def _lower_cap(
 
 
 def _lines(
-    first: Array, second: Array, widths: Array, limits: JointLimits, acc: float
+    first: Array, second: Array, widths: Array, limits: JointLimits, acc: float, reserve: float
 ) -> tuple[Array, Array, Array, Joints, Array, Joints]:
     """top, bottom, slope (N, K), joint (K,) of the lines; x by points that only bend, its joint (N,)."""
     intervals, points, joints = first.shape
-    keep = 1.0 - _ACCELERATION_RESERVE
+    keep = 1.0 - reserve
     low, high = limits.acceleration_lower * keep, limits.acceleration_upper * keep
     way = first + 2.0 * (widths[:, None] * _FRACTIONS)[:, :, None] * second
     flat = np.abs(way) <= _NO_SLOPE * (np.max(np.abs(way)) + 1e-300)

@@ -76,7 +76,7 @@ def elastic_walk(
         target = targets[i + 1]
         room = _Room.at(model, q[i], (bounds[0][i + 1], bounds[1][i + 1]), reserve, float(grid.times[i]))
         criterion = criterion_of(float(grid.s[i + 1]))
-        easy = solver.solve(TickProblem(target, q[i], room.none(), criterion, model.free))
+        easy = solver.solve(TickProblem(target, q[i], room.none(), criterion, model.free), thorough=False)
         if easy.solved and room.holds(easy.q - q[i]):
             q[i + 1] = rounded_inside(easy.q, model.limits)
             continue
