@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 Joints = NDArray[np.int16]
 
 _FRACTIONS = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
-_NO_SLOPE = 1e-12
+_NO_SLOPE = 1e-10
 _CHUNK = 64
 
 PATH = -1
@@ -115,6 +115,8 @@ def _speed_caps(
     keep = 1.0 - reserve
     fastest = np.where(first > 0.0, limits.speed_upper, -limits.speed_lower) * keep
     steep = np.abs(first)
+    # A joint that rests moves by rounding alone; where it may not go that way, that would stop the clock.
+    steep = np.where(steep > _NO_SLOPE * np.max(steep), steep, 0.0)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         squares = np.where(steep > 0.0, fastest / steep, np.inf) ** 2
     of_joint = squares.min(axis=1)

@@ -98,6 +98,17 @@ def plan_motion(model: Model, task: MotionTask) -> PlannedMotion | Refusal:
     See docs/reference/pacing.md for the method and what it promises.
     """
     model = replace(model, free=model.free & _can_move(model))
+    found = _planned(model, task)
+    one_way = (model.limits.speed_lower == 0.0) | (model.limits.speed_upper == 0.0)
+    if isinstance(found, Refusal) and np.any(model.free & one_way):
+        # A joint that must not go back needs a curve without the least swing; at rest it has one.
+        held = _planned(replace(model, free=model.free & ~one_way), task)
+        return found if isinstance(held, Refusal) else held
+    return found
+
+
+def _planned(model: Model, task: MotionTask) -> PlannedMotion | Refusal:
+    """The motion with the joints that are free, its reserve widened where rows pass a position limit."""
     grid = path_grid(task.path, task.law)
     reserve = RESERVE
     found: PlannedMotion | Refusal = Refusal(0.0)
@@ -111,10 +122,10 @@ def plan_motion(model: Model, task: MotionTask) -> PlannedMotion | Refusal:
 
 
 def _can_move(model: Model) -> NDArray[np.bool_]:
-    """Joints that some limit does not hold in place: a speed of 0 both ways is no direction to go."""
+    """Joints that no limit holds in place: who may not speed up, or not slow down, cannot go anywhere."""
     limits = model.limits
     held = (limits.speed_lower == 0.0) & (limits.speed_upper == 0.0)
-    held |= (limits.acceleration_lower == 0.0) & (limits.acceleration_upper == 0.0)
+    held |= (limits.acceleration_lower == 0.0) | (limits.acceleration_upper == 0.0)
     held |= limits.position_lower == limits.position_upper
     return np.asarray(~held)
 
@@ -135,10 +146,20 @@ def _with_reserve(
     found: PlannedMotion | Refusal = Refusal(0.0)
     for timed in curves:
         # The path correction of a rough curve may pass a position limit on which a joint starts.
-        found = rows_on_clock(model, timed, task.ticking, float(np.sum(grid.times)))
+        try:
+            found = rows_on_clock(model, timed, task.ticking, float(np.sum(grid.times)))
+        except np.linalg.LinAlgError:
+            knot = _most_singular(model, timed, grid)
+            found = Refusal(float(grid.s[knot]), timed=timed, knot=knot)
         if isinstance(found, PlannedMotion):
             break
     return found
+
+
+def _most_singular(model: Model, timed: TimedCurve, grid: PathGrid) -> int:
+    """Knot whose Jacobian is nearest to losing its rank."""
+    _, jacobians = model.differences(timed.curve.q, model.targets(grid.poses))
+    return int(np.argmin(np.linalg.svd(jacobians, compute_uv=False)[:, -1]))
 
 
 def _outside(model: Model, grid: PathGrid, q: Array) -> Refusal:

@@ -10,12 +10,15 @@ from irlx.motion.pose_path import Poses
 from irlx.pacing.slowdown.curve import JointCurve
 from irlx.pacing.slowdown.model import Model
 from irlx.pacing.slowdown.reserve import rounded_inside
+from irlx.robot.limits import JointLimits
 
 Array = NDArray[np.float64]
 
 _ROUNDS = 2
 _POOR_SEED = 1e-6
 _HAIR = 1e-5
+_BACK = 1e-9
+_PUT_BACK = 3
 
 
 def resample(model: Model, curve: JointCurve, s: Array, poses: Poses) -> Array:
@@ -33,17 +36,35 @@ def resample(model: Model, curve: JointCurve, s: Array, poses: Poses) -> Array:
     q = _off_limits(model, q, targets)
     if len(s) and s[-1] == curve.s[-1]:
         q[-1] = curve.q[-1]
-    return rounded_inside(q, model.limits)
+    return _one_way(rounded_inside(q, model.limits), curve.q[0], model.limits)
+
+
+def _one_way(q: Array, start: Array, limits: JointLimits) -> Array:
+    """Rows (M, n) after `start`, joints that may go one way only kept from going back by rounding."""
+    for joint in np.flatnonzero((limits.speed_lower == 0.0) | (limits.speed_upper == 0.0)):
+        whole = np.concatenate([start[joint : joint + 1], q[:, joint]])
+        only_up = limits.speed_lower[joint] == 0.0
+        kept = (np.maximum if only_up else np.minimum).accumulate(whole)[1:]
+        if float(np.max(np.abs(kept - q[:, joint]))) <= _BACK:
+            q[:, joint] = kept
+    return q
 
 
 def _off_limits(model: Model, q: Array, targets: list[pin.SE3]) -> Array:
-    """Joints that their correction led a hair beyond a limit are put back there; others correct instead."""
-    beyond = model.limits.into_positions(q) - q
-    rows = np.flatnonzero(np.any((beyond != 0.0) & (np.abs(beyond) <= _HAIR), axis=1))
-    if rows.size:
-        held = beyond[rows] != 0.0
+    """Joints that their correction led a hair beyond a limit are put back there; others correct instead.
+
+    Of these another may stand on its limit and pass it in turn: it is held as well, once more round.
+    """
+    held = np.zeros(q.shape, dtype=np.bool_)
+    for _ in range(_PUT_BACK):
+        beyond = model.limits.into_positions(q) - q
+        rows = np.flatnonzero(np.any((beyond != 0.0) & (np.abs(beyond) <= _HAIR), axis=1))
+        if rows.size == 0:
+            break
+        held |= beyond != 0.0
+        back = [targets[k] for k in rows]
         try:
-            q[rows] = model.onto_path(q[rows] + beyond[rows], [targets[k] for k in rows], _ROUNDS, held).q
+            q[rows] = model.onto_path(q[rows] + beyond[rows], back, _ROUNDS, held[rows]).q
         except np.linalg.LinAlgError:
-            return q
+            break
     return q

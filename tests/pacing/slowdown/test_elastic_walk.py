@@ -1,0 +1,164 @@
+"""The elastic walk against plain Newton steps and, interval by interval, a second quadratic solver."""
+
+from __future__ import annotations
+
+import daqp
+import numpy as np
+import pytest
+
+from irlx.motion.trapezoid import Trapezoid
+from irlx.pacing.slowdown.elastic_walk import Passage, elastic_walk
+from irlx.pacing.slowdown.grid import PathGrid, path_grid
+from irlx.pacing.slowdown.reserve import RESERVE, reserved
+from irlx.transform.criteria.least_motion import LeastMotion
+from machines import machine
+from slow_cases import free_rows, grid_of, jacobian_at, slow_limits, used, walked
+
+pytestmark = pytest.mark.req("MOT-21")
+
+robots = pytest.mark.parametrize("name", ["arm7", "koch11"])
+
+
+@robots
+def test_without_bounds_it_is_a_plain_least_motion_walk(name: str) -> None:
+    passage = walked(name, machine(name).unlimited())
+    assert passage.stopped is None
+    np.testing.assert_allclose(passage.q, free_rows(name), atol=1e-9)
+    assert not np.any(passage.stretch)
+
+
+@robots
+def test_bounds_that_do_not_bind_change_nothing(name: str) -> None:
+    fast = 1.05 * used(name)
+    limits = machine(name).unlimited().with_pair("speed", -fast, fast)
+    np.testing.assert_allclose(walked(name, limits).q, free_rows(name), atol=1e-9)
+
+
+def braking(room: float, a: float, dt: float) -> float:
+    """Fastest speed from which whole steps of deceleration stop within `room`: by bisection on the stop."""
+    low, high = 0.0, 10.0 * np.sqrt(a * room) + room / dt + a * dt
+    for _ in range(80):
+        v = 0.5 * (low + high)
+        speeds = v - a * dt * np.arange(int(v / (a * dt)) + 1)
+        low, high = (v, high) if np.sum(speeds) * dt <= room else (low, v)
+    return low
+
+
+def stated_bounds(limits, q: np.ndarray, bounds, duration: float):
+    """Position room and stretchable bounds of an interval, written from the specification."""
+    low = np.maximum(np.minimum(bounds[0], q + RESERVE / 12), limits.position_lower) - q
+    high = np.minimum(np.maximum(bounds[1], q - RESERVE / 12), limits.position_upper) - q
+    sides = []
+    for room, speed, a in (
+        (np.maximum(-low, 0.0), -limits.speed_lower, limits.acceleration_upper),
+        (np.maximum(high, 0.0), limits.speed_upper, -limits.acceleration_lower),
+    ):
+        brake = [braking(r, 0.9 * b, duration) if r < 1.0 else np.inf for r, b in zip(room, a, strict=True)]
+        sides.append(duration * np.minimum(speed, brake))
+    return low, high, *sides
+
+
+def second_opinion(name: str, limits, grid: PathGrid, passage: Passage, i: int) -> tuple[float, float]:
+    """How far another solver would move the step (as a share of it) and the stretch of interval i.
+
+    The stated problem, linear about the step found: the step is right where it is its own best answer.
+    """
+    robot, q, dt = machine(name), passage.q[i], float(grid.times[i])
+    step, unit = passage.q[i + 1] - q, float(np.max(np.abs(passage.q[i + 1] - q)))
+    reserves = reserved(limits, grid.intervals + 1, RESERVE)
+    low, high, down, up = stated_bounds(limits, q, (reserves[0][i + 1], reserves[1][i + 1]), dt)
+    price = float(robot.weights @ np.minimum(limits.speed_upper, -limits.speed_lower) ** 2)
+    basis = np.linalg.svd(jacobian_at(robot, q + step))[2][6:].T * unit
+    r = basis.shape[1]
+    hessian, slope = np.zeros((r + 1, r + 1)), np.zeros(r + 1)
+    hessian[:r, :r] = (basis.T * robot.weights) @ basis / dt**2
+    hessian[r, r], slope[:r], slope[r] = price * 1e-3, basis.T @ (robot.weights * step) / dt**2, price
+    zero, eps = np.zeros((robot.n, 1)), np.append(np.zeros(r), 1.0)
+    rows = np.vstack(
+        [np.hstack([basis, zero]), np.hstack([basis, -up[:, None]]), np.hstack([-basis, -down[:, None]]), eps]
+    )
+    scale = np.append(np.full(3 * robot.n, unit), 1.0)
+    above = np.concatenate([high - step, up - step, down + step, [1e9]]) / scale
+    below = np.concatenate([low - step, np.full(2 * robot.n, -1e30), [0.0]]) / scale
+    found, _, flag, _ = daqp.solve(hessian / price, slope / price, rows / scale[:, None], above, below)
+    assert flag == 1, flag
+    return float(np.max(np.abs(basis @ found[:r]))) / unit, abs(float(found[r] - passage.stretch[i]))
+
+
+@pytest.mark.parametrize(("name", "share"), [("arm7", 0.85), ("arm7", 0.5), ("koch11", 0.5)])
+def test_steps_are_the_best_ones_in_the_eyes_of_another_solver(name: str, share: float) -> None:
+    limits, grid = slow_limits(name, share), grid_of(name)
+    passage = walked(name, limits)
+    assert passage.stopped is None
+    assert np.count_nonzero(passage.stretch > 1e-3) > 5
+    for i in range(1, grid.intervals - 1, 11):
+        moved, stretched = second_opinion(name, limits, grid, passage, i)
+        assert moved <= 1e-4, i
+        assert stretched <= 1e-4, i
+
+
+@robots
+def test_knots_are_on_the_path_and_inside_the_positions(name: str) -> None:
+    for seed in range(2):
+        limits, grid = slow_limits(name, 0.6, seed), grid_of(name)
+        passage = walked(name, limits)
+        distance, angle = machine(name).errors(passage.q, grid.poses)
+        assert max(distance, angle) < 1e-9
+        assert np.all(limits.position_lower <= passage.q)
+        assert np.all(passage.q <= limits.position_upper)
+
+
+@robots
+def test_no_step_is_longer_than_its_stretched_bounds(name: str) -> None:
+    limits, grid = slow_limits(name, 0.5), grid_of(name)
+    passage = walked(name, limits)
+    allowed = limits.speed_upper * grid.times[:, None] * (1.0 + passage.stretch[:, None])
+    assert np.all(np.abs(np.diff(passage.q, axis=0)) <= allowed * (1.0 + 1e-9) + 1e-12)
+
+
+@robots
+@pytest.mark.req("MOT-20")
+def test_a_start_on_its_limit_is_led_inside(name: str) -> None:
+    """Within a few dozen knots the joint is a reserve away from the limit on which it began."""
+    robot = machine(name)
+    joint = int(np.argmax(np.abs(free_rows(name)[-1] - robot.start)))
+    lower, upper = (side.copy() for side in robot.unlimited().pair("position"))
+    rising = free_rows(name)[-1, joint] > robot.start[joint]
+    (upper if rising else lower)[joint] = robot.start[joint]
+    passage = walked(name, robot.unlimited().with_pair("position", lower, upper))
+    assert passage.stopped is None
+    way = np.abs(passage.q[:, joint] - robot.start[joint])
+    assert np.all((lower <= passage.q) & (passage.q <= upper))
+    assert np.all(way[14:-14] >= RESERVE * (1.0 - 1e-9))
+    assert np.max(np.diff(way)[:11]) <= RESERVE / 12 * (1.0 + 1e-6)
+
+
+@pytest.mark.req("MOT-22")
+def test_a_way_out_of_reach_is_stopped_at_the_first_interval_without_a_step() -> None:
+    """arm7 stretches to its reach of the line; the interval is where the arm is straight."""
+    robot = machine("arm7")
+    path = robot.line((1.5, 0.0, 0.0))
+    grid = path_grid(path, Trapezoid.fastest(path.length, 0.5, 2.0))
+    least, limits = LeastMotion(robot.weights), robot.unlimited()
+    bounds = reserved(limits, grid.intervals + 1, RESERVE)
+    passage = elastic_walk(robot.model(limits), grid, robot.start, lambda s: least, bounds, RESERVE)
+    assert passage.stopped is not None
+    interval, solution = passage.stopped
+    assert len(passage.q) == interval + 1
+    assert not solution.solved
+    wrist = robot_wrist(passage.q[-1])
+    assert 0.99 < wrist <= 1.0 + 1e-9
+
+
+def robot_wrist(q: np.ndarray) -> float:
+    """How straight the elbow stands: distance of shoulder and wrist as a share of the two links."""
+    return float(np.abs(np.cos(q[3] / 2.0)))
+
+
+@robots
+def test_frozen_joints_keep_their_bits(name: str) -> None:
+    robot, grid = machine(name), grid_of(name)
+    least, limits = LeastMotion(robot.weights), slow_limits(name, 0.8)
+    bounds = reserved(limits, grid.intervals + 1, RESERVE)
+    passage = elastic_walk(robot.model(limits, (2,)), grid, robot.start, lambda s: least, bounds, RESERVE)
+    assert np.all(passage.q[:, 2] == robot.start[2])

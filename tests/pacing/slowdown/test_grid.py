@@ -1,0 +1,104 @@
+"""Knots of a path: corners, programmed times, and how many there are."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+
+from irlx.motion.line import Line
+from irlx.motion.trapezoid import Trapezoid
+from irlx.pacing.slowdown.grid import LEAST_INTERVALS, STEP, PathGrid, path_grid
+
+pytestmark = pytest.mark.req("MOT-21")
+
+LAWS = {
+    "trapezoid": Trapezoid.fastest(0.4, 0.25, 1.5),
+    "triangle": Trapezoid.fastest(0.02, 0.25, 1.5),
+    "stretched to TIME": Trapezoid.fastest(0.4, 0.25, 1.5).stretched(7.3),
+    "stretched triangle": Trapezoid.fastest(0.02, 0.25, 1.5).stretched(3.1),
+    "tiny": Trapezoid.fastest(2e-9, 0.25, 1.5),
+    "hard ramps": Trapezoid.fastest(0.4, 0.25, 1e3),
+    "long": Trapezoid.fastest(50.0, 0.5, 1.5),
+}
+
+
+def grid_of(law: Trapezoid) -> PathGrid:
+    end = np.array([law.length, 0.0, 0.0])
+    return path_grid(Line(np.zeros(3), np.eye(3), end, np.eye(3)), law)
+
+
+@pytest.fixture(params=LAWS.values(), ids=LAWS.keys())
+def law(request: pytest.FixtureRequest) -> Trapezoid:
+    return request.param
+
+
+def test_times_sum_to_the_duration_of_the_law(law: Trapezoid) -> None:
+    assert np.sum(grid_of(law).times) == pytest.approx(law.duration, rel=1e-12)
+
+
+def test_times_and_rates_are_those_of_the_law(law: Trapezoid) -> None:
+    """Evaluated at the times, the law stands at the knots."""
+    grid = grid_of(law)
+    s, rates = law.evaluate(np.concatenate([[0.0], np.cumsum(grid.times)]))
+    np.testing.assert_allclose(s, grid.s, atol=1e-11 * law.length)
+    np.testing.assert_allclose(rates[1:-1], grid.rates[1:-1], rtol=1e-5)
+    assert np.all(grid.times > 0.0)
+
+
+def test_corners_of_the_law_are_knots(law: Trapezoid) -> None:
+    grid = grid_of(law)
+    for corner in law.corners:
+        assert np.min(np.abs(grid.s - corner)) <= 1e-15 * law.length
+    assert (grid.s[0], grid.s[-1]) == (0.0, law.length)
+    assert (grid.rates[0], grid.rates[-1]) == (0.0, 0.0)
+
+
+def test_intervals_are_even_few_milliseconds_and_enough(law: Trapezoid) -> None:
+    grid = grid_of(law)
+    assert grid.intervals >= LEAST_INTERVALS
+    assert np.diff(grid.s).max() <= law.speed * grid.step * (1.0 + 1e-9)
+    pieces = np.searchsorted(grid.s, np.array(law.corners) - 1e-12 * law.length)
+    for first, last in itertools.pairwise(pieces):
+        widths = np.diff(grid.s[first : last + 1])
+        np.testing.assert_allclose(widths, widths[0], rtol=1e-6)
+
+
+def test_short_motions_have_fine_steps_and_long_ones_coarse_ones() -> None:
+    assert grid_of(LAWS["trapezoid"]).step == STEP == 0.004
+    assert grid_of(LAWS["long"]).step == 0.016
+    assert grid_of(LAWS["long"]).intervals < 7000
+
+
+def test_poses_are_those_of_the_path(law: Trapezoid) -> None:
+    grid = grid_of(law)
+    np.testing.assert_allclose(grid.poses.position[:, 0], grid.s, atol=1e-15 * max(1.0, law.length))
+
+
+@pytest.mark.parametrize("hair", [1e-15, 1e-13, 1e-10, 1e-7])
+def test_corners_a_hair_apart_are_one(hair: float) -> None:
+    """A cruise of 1E-15 s is rounding; knots so close would make a spline swing."""
+    law = Trapezoid.fastest(0.25, 0.5 * (1.0 - hair), 1.0)
+    assert 0.0 < law.cruise < 1e-6
+    grid = grid_of(law)
+    assert np.diff(grid.s).min() > 0.3 * np.diff(grid.s).max()
+    assert np.sum(grid.times) == pytest.approx(law.duration, rel=1e-12)
+
+
+# ---- the law's own inverse
+
+
+def test_rates_and_times_at_a_way_invert_the_law(law: Trapezoid) -> None:
+    times = np.linspace(0.0, law.duration, 501)
+    s, rates = law.evaluate(times)
+    np.testing.assert_allclose(law.times_at(s), times, atol=1e-7 * law.duration)
+    inner = slice(1, -1)
+    np.testing.assert_allclose(law.rates_at(s)[inner], rates[inner], rtol=1e-7)
+    assert law.times_at(np.array([0.0, law.length])).tolist() == pytest.approx([0.0, law.duration], rel=1e-14)
+
+
+def test_corners_are_where_the_acceleration_changes(law: Trapezoid) -> None:
+    inner = law.corners[1:-1]
+    expected = [law.ramp, law.ramp + law.cruise] if law.cruise > 0.0 else [law.ramp]
+    np.testing.assert_allclose(law.times_at(np.array(inner)), expected, rtol=1e-9)

@@ -1,0 +1,99 @@
+"""Rungs of smoothing: order, when to stop, what smoothing is worth, and no rung beyond a limit."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from irlx.pacing.slowdown.clock import plan_clock
+from irlx.pacing.slowdown.clock_bounds import clock_bounds
+from irlx.pacing.slowdown.curve import JointCurve
+from irlx.pacing.slowdown.ladder import TimedCurve, timed_curves
+from irlx.pacing.slowdown.reserve import RESERVE, reserved
+from irlx.robot.limits import JointLimits
+from machines import machine
+from slow_cases import SPEEDS, free_rows, grid_of, slow_limits, used, walked
+
+pytestmark = pytest.mark.req("MOT-21")
+
+robots = pytest.mark.parametrize("name", ["arm7", "koch11"])
+
+
+def rungs(name: str, limits: JointLimits, q: np.ndarray | None = None) -> list[TimedCurve]:
+    grid = grid_of(name)
+    q = walked(name, limits).q if q is None else q
+    bounds = reserved(limits, grid.intervals + 1, RESERVE)
+    return timed_curves(machine(name).model(limits), grid, q, bounds, SPEEDS[name][1])
+
+
+@cache
+def slow_rungs(name: str, tamed: bool = True) -> list[TimedCurve]:
+    """The rungs of the usual slow case, its acceleration limits left out where it is not tamed."""
+    return rungs(name, slow_case(name, tamed))
+
+
+@cache
+def slow_case(name: str, tamed: bool = True) -> JointLimits:
+    limits, none = slow_limits(name, 0.5), np.full(machine(name).n, np.inf)
+    return limits if tamed else limits.with_pair("acceleration", -none, none)
+
+
+@robots
+def test_all_rungs_are_tried_and_come_fastest_first(name: str) -> None:
+    found = slow_rungs(name)
+    times = [timed.clock.duration for timed in found]
+    assert len(found) >= 2
+    assert times == sorted(times)
+
+
+def test_smoothing_is_worth_its_while() -> None:
+    """Kinks of the bare walk under narrow acceleration limits: the best rung is at least 3 % faster."""
+    name = "koch11"
+    limits, grid = slow_limits(name, 0.8, cut=False), grid_of(name)
+    hard = np.full(machine(name).n, 0.5)
+    limits = limits.with_pair("acceleration", -hard, hard)
+    bare = JointCurve(grid.s, walked(name, limits).q)
+    clock = plan_clock(clock_bounds(bare, limits, grid.rates, SPEEDS[name][1]))
+    assert rungs(name, limits)[0].clock.duration < 0.97 * clock.duration
+
+
+@robots
+def test_a_walk_that_loses_nothing_is_taken_as_it_is(name: str) -> None:
+    fast = 2.0 * used(name) + 0.1
+    limits = machine(name).unlimited().with_pair("speed", -fast, fast)
+    limits = limits.with_pair("acceleration", -1e3 * fast, 1e3 * fast)
+    found = rungs(name, limits)
+    assert len(found) == 1
+    np.testing.assert_allclose(found[0].curve.q, free_rows(name), atol=1e-9)
+
+
+@robots
+@pytest.mark.req("MOT-20")
+def test_no_rung_leaves_a_position_limit(name: str) -> None:
+    limits = slow_case(name)
+    for timed in slow_rungs(name):
+        s = timed.curve.s
+        q = timed.curve.at(np.linspace(0.0, s[-1], 5001))
+        assert np.max(np.maximum(q - limits.position_upper, limits.position_lower - q)) <= 1e-9
+
+
+def test_postures_outside_have_no_rung() -> None:
+    rows = free_rows("arm7")
+    upper = np.where(np.arange(7) == 3, rows[:, 3].max() - 0.5 * np.ptp(rows[:, 3]), np.inf)
+    limits = machine("arm7").unlimited().with_pair("position", -np.full(7, np.inf), upper)
+    limits = limits.with_pair("acceleration", -np.full(7, 50.0), np.full(7, 50.0))
+    assert all(np.max(timed.curve.q[:, 3]) <= upper[3] + 1e-9 for timed in rungs("arm7", limits, rows))
+
+
+@pytest.mark.parametrize("name", ["arm7"])
+def test_without_accelerations_a_smooth_rung_comes_first(name: str) -> None:
+    """Nothing tames the kinks of the walk there: it is taken only where it is 0.5 % faster."""
+    found, walk = slow_rungs(name, False), walked(name, slow_case(name, False)).q
+    bare = [timed for timed in found if np.array_equal(timed.curve.q, walk)]
+    smooth = min(t.clock.duration for t in found if all(t is not b for b in bare))
+    if any(found[0] is timed for timed in bare):
+        assert found[0].clock.duration * 1.005 <= smooth
+    else:
+        assert found[0].clock.duration == smooth

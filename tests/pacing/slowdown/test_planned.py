@@ -1,0 +1,176 @@
+"""Whole motions planned: rows judged by the verifier's kinematics and by differences; refusals."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from irlx.motion.trapezoid import Trapezoid
+from irlx.pacing.slowdown import ladder
+from irlx.pacing.slowdown.clock_bounds import Governor, Reserves, clock_bounds
+from irlx.pacing.slowdown.planned import PlannedMotion, Refusal, plan_motion
+from machines import machine
+from slow_cases import SPEEDS, WAYS, jacobian_at, slow_limits, used
+from stream_judge import excess
+
+pytestmark = pytest.mark.req("MOT-20")
+
+KINDS = ("position", "speed", "acceleration")
+robots = pytest.mark.parametrize("name", ["arm7", "koch11"])
+
+
+def plan(name: str, limits, dt: float, frozen: tuple[int, ...] = ()) -> PlannedMotion | Refusal:
+    robot = machine(name)
+    path = robot.line(WAYS[name], (0.1, -0.2, 0.15))
+    law = Trapezoid.fastest(path.length, *SPEEDS[name])
+    return plan_motion(robot.model(limits, frozen), robot.task(path, law, dt))
+
+
+def assert_promised(name: str, limits, found: PlannedMotion, dt: float) -> None:
+    robot = machine(name)
+    path = robot.line(WAYS[name], (0.1, -0.2, 0.15))
+    law = Trapezoid.fastest(path.length, *SPEEDS[name])
+    rows = np.vstack([robot.start, found.q])
+    assert excess(rows, dt, *(limits.pair(kind) for kind in KINDS)).none
+    s = np.array([demand.s for demand in found.demands])
+    assert max(robot.errors(found.q, path.poses(s))) < 1e-9
+    assert np.all(np.diff(s, prepend=0.0) >= 0.0)
+    assert s[-1] == path.length
+    assert len(s) * dt >= law.duration - 1e-6 * dt
+    assert np.max(np.abs(np.diff(s, prepend=0.0)) / dt) <= law.speed * (1.0 + 1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "dt"),
+    [*[("arm7", dt) for dt in (0.00025, 0.001, 0.01, 0.05)], ("koch11", 0.001), ("koch11", 0.05)],
+)
+def test_rows_of_a_slowed_motion_keep_every_promise(name: str, dt: float) -> None:
+    limits = slow_limits(name, 0.5)
+    found = plan(name, limits, dt)
+    assert isinstance(found, PlannedMotion)
+    assert found.timed.clock.duration > 1.02 * machine_law(name).duration
+    assert_promised(name, limits, found, dt)
+
+
+def machine_law(name: str) -> Trapezoid:
+    return Trapezoid.fastest(machine(name).line(WAYS[name]).length, *SPEEDS[name])
+
+
+@pytest.mark.parametrize("name", ["arm7"])
+def test_ticks_change_the_duration_by_a_tick_only(name: str) -> None:
+    limits = slow_limits(name, 0.5)
+    times = [len(plan(name, limits, dt).q) * dt for dt in (0.001, 0.01)]
+    assert times[1] == pytest.approx(times[0], abs=0.012)
+
+
+@robots
+def test_without_limits_it_takes_the_programmed_time(name: str) -> None:
+    found = plan(name, machine(name).unlimited(), 0.01)
+    assert isinstance(found, PlannedMotion)
+    assert found.timed.clock.duration == pytest.approx(machine_law(name).duration, rel=1e-6)
+    assert_promised(name, machine(name).unlimited(), found, 0.01)
+
+
+@robots
+@pytest.mark.req("TRF-02")
+def test_joints_that_may_not_move_count_as_frozen(name: str) -> None:
+    """A speed of 0 both ways, or an acceleration of 0, keeps every bit of the joint."""
+    spare = int(np.argmax(np.abs(np.linalg.svd(jacobian_at(machine(name), machine(name).start))[2][-1])))
+    for kind in ("speed", "acceleration"):
+        bound = np.where(np.arange(machine(name).n) == spare, 0.0, 2.0 * used(name).max() * 10.0)
+        limits = machine(name).unlimited().with_pair(kind, -bound, bound)
+        found = plan(name, limits, 0.01)
+        assert isinstance(found, PlannedMotion), kind
+        assert np.all(found.q[:, spare] == machine(name).start[spare])
+        assert_promised(name, limits, found, 0.01)
+
+
+@robots
+def test_zero_on_one_side_of_a_joint_that_can_give_way(name: str) -> None:
+    """The joint may rise or rest but never fall; the rest of the arm makes up for it."""
+    robot = machine(name)
+    spare = int(np.argmax(np.abs(np.linalg.svd(jacobian_at(robot, robot.start))[2][-1])))
+    for side in (0, 1):
+        speed = np.tile(3.0 * used(name).max() + 0.1, robot.n)
+        lower, upper = -speed.copy(), speed.copy()
+        (lower if side == 0 else upper)[spare] = 0.0
+        limits = robot.unlimited().with_pair("speed", lower, upper)
+        found = plan(name, limits, 0.01)
+        assert isinstance(found, PlannedMotion), side
+        assert_promised(name, limits, found, 0.01)
+
+
+@robots
+def test_a_clock_that_is_too_fast_is_slowed_by_the_check_of_its_rows(name: str, monkeypatch) -> None:
+    """Reserves the wrong way round: the clock passes speeds by 2 %, accelerations by 5 %; no row may."""
+
+    def too_fast(curve, limits, rates, acc):
+        return clock_bounds(curve, limits, rates, acc, reserves=Reserves(-0.02, -0.05))
+
+    limits = slow_limits(name, 0.5)
+    plain = plan(name, limits, 0.01)
+    monkeypatch.setattr(ladder, "clock_bounds", too_fast)
+    found = plan(name, limits, 0.01)
+    assert isinstance(found, PlannedMotion)
+    assert isinstance(plain, PlannedMotion)
+    assert found.timed.clock.duration < plain.timed.clock.duration
+    assert found.factor > 1.005
+    assert_promised(name, limits, found, 0.01)
+
+
+# ---- refusals
+
+
+@pytest.mark.req("MOT-22")
+def test_a_position_limit_that_cuts_the_only_way_is_a_failed_step() -> None:
+    """Six free joints of arm7 have one way; a limit across it leaves none."""
+    robot = machine("arm7")
+    free = plan("arm7", robot.unlimited(), 0.01, frozen=(2,))
+    assert isinstance(free, PlannedMotion)
+    way = free.q[:, 0] - robot.start[0]
+    cut = robot.start[0] + 0.5 * way[-1]
+    lower, upper = np.full(7, -np.inf), np.full(7, np.inf)
+    (upper if way[-1] > 0 else lower)[0] = cut
+    found = plan("arm7", robot.unlimited().with_pair("position", lower, upper), 0.01, frozen=(2,))
+    assert isinstance(found, Refusal)
+    assert found.solution is not None
+    assert not found.solution.solved
+    s = np.array([demand.s for demand in free.demands])
+    met = np.interp(0.5, way / way[-1], s)
+    assert found.s == pytest.approx(met, abs=2e-3)
+
+
+@pytest.mark.req("MOT-22")
+def test_a_joint_that_cannot_accelerate_leaves_no_way_for_six() -> None:
+    robot = machine("arm7")
+    hard = np.where(np.arange(7) == 0, 0.0, 50.0)
+    found = plan("arm7", robot.unlimited().with_pair("acceleration", -hard, hard), 0.01, frozen=(2,))
+    assert isinstance(found, Refusal)
+    assert found.solution is not None or found.broken is not None or found.timed is not None
+
+
+@pytest.mark.req("MOT-22")
+def test_a_joint_that_may_not_go_the_needed_way_stops_the_clock_or_the_walk() -> None:
+    """Speed 0 on the one side that six joints need: no clock, however slow."""
+    robot = machine("arm7")
+    free = plan("arm7", robot.unlimited(), 0.01, frozen=(2,))
+    assert isinstance(free, PlannedMotion)
+    lower, upper = np.full(7, -9.0), np.full(7, 9.0)
+    (upper if free.q[-1, 0] > robot.start[0] else lower)[0] = 0.0
+    found = plan("arm7", robot.unlimited().with_pair("speed", lower, upper), 0.01, frozen=(2,))
+    assert isinstance(found, Refusal)
+    assert found.timed is not None
+    assert found.timed.clock.joint[found.knot] == 0
+    assert found.timed.clock.governor[found.knot] == Governor.SPEED
+
+
+@pytest.mark.req("MOT-22")
+def test_a_merely_slow_limit_is_no_refusal() -> None:
+    """A hundredth of the speed needed: a hundred times slower, and right."""
+    robot = machine("arm7")
+    slow = used("arm7") * np.where(np.arange(7) == 0, 0.05, 3.0)
+    limits = robot.unlimited().with_pair("speed", -slow, slow)
+    found = plan("arm7", limits, 0.01, frozen=(2,))
+    assert isinstance(found, PlannedMotion)
+    assert found.timed.clock.duration > 5.0 * machine_law("arm7").duration
+    assert_promised("arm7", limits, found, 0.01)
