@@ -51,7 +51,7 @@ def test_a_speed_limit_slows_the_tool_and_is_named(kit, shop) -> None:
 
 @pytest.mark.req("MOT-21")
 def test_an_acceleration_limit_slows_a_turn(kit) -> None:
-    """The tool turns by joint a; with 0.5 rad/s2 a turn of 0.8 rad takes a triangle of 2 sqrt(0.8 / 0.5) s."""
+    """The tool turns by joint a alone, which has 0.5 rad/s2: the ramps of the turn follow it."""
     shop = kit.shop(limits=kit.limits(5.0, np.inf, [9.0, 9, 9, 9, 0.5, 9, 9]))
     turn = kit.rotation(kit.moved(0, 0, 0, 0, -0.8, 0, 0))
     rows = shop.line(kit.position(kit.start), turn)

@@ -21,7 +21,7 @@ SLOWED = 0.999
 class Slowing:
     """A stretch of a motion that runs slower than programmed.
 
-    Rows `first_row` .. `last_row` of the motion (from 0). At `s` (path parameter) the rate is lowest:
+    Rows `first_row` .. `last_row` of the motion (from 0). At `s` (path parameter) most rate is missing:
     `achieved` instead of `requested` (per s), because of the `joint` (from 0; -1 none) and its `governor`,
     SPEED or ACCELERATION. `lost` is the time the stretch costs, s.
     """
@@ -59,7 +59,8 @@ def _slowing(
     knots = np.arange(first, last + 1)
     by_joint = knots[clock.joint[first : last + 1] != PATH]
     among = by_joint if by_joint.size else knots
-    worst = int(among[np.argmin(share[among])])
+    # Where most speed is missing; by its share the end of a ramp would be named, where little is lost.
+    worst = int(among[np.argmax((rates - np.sqrt(clock.x))[among])])
     times = clock.times * factor
     before, behind = max(first - 1, 0), min(last + 1, len(times) - 1)
     programmed = np.sum(

@@ -42,8 +42,8 @@ class LimitActive:
 class Slowed:
     """The tool ran slower than programmed from `first_tick` to `last_tick`, for one joint's limit.
 
-    `line` of the move in the program; `way` of `length` (m, or rad where the tool only `turns`) where it was
-    slowest: `achieved` instead of `requested` (m/s or rad/s), for the `kind` (speed or acceleration) limit
+    `line` of the move in the program; `way` of `length` (m, or rad where the tool only `turns`) where most
+    speed is missing: `achieved` instead of `requested` (m/s or rad/s), for the `kind` (speed or acceleration) limit
     `bound` of `joint` ('' where no single joint decides); `lost` time, s.
     """
 

@@ -22,6 +22,7 @@ from irlx.pacing.slowdown.model import Model
 from irlx.pacing.slowdown.resample import resample
 from irlx.pacing.slowdown.reserve import RESERVE, reserved
 from irlx.transform.criteria.criterion import Criterion
+from irlx.transform.nearest import scaled_singular_values
 from irlx.transform.tick import TickSolution
 
 Array = NDArray[np.float64]
@@ -30,7 +31,10 @@ SLOWEST_SHARE = 1e-3
 """Share of the programmed rate below which a motion counts as standing."""
 
 LONGEST_STAND = 2.0
-"""Time (s) that a motion may stand in all because of a bound that no slowness satisfies."""
+"""Time (s) that a motion may stand in all at a singular place."""
+
+SINGULAR_SHARE = 1e-3
+"""Smallest over largest singular value of the scaled Jacobian below which a place counts as singular."""
 
 _STRETCHES = 8
 _RESERVES = 4
@@ -140,7 +144,7 @@ def _with_reserve(
     curves = timed_curves(model, grid, passage.q, bounds, task.acc)
     if not curves:
         return _outside(model, grid, passage.q)
-    standing = _standing(curves[0].clock, grid)
+    standing = _standing(model, curves[0], grid)
     if standing is not None:
         return Refusal(float(grid.s[standing]), timed=curves[0], knot=standing)
     found: PlannedMotion | Refusal = Refusal(0.0)
@@ -171,16 +175,24 @@ def _outside(model: Model, grid: PathGrid, q: Array) -> Refusal:
     return Refusal(float(grid.s[knot]), broken=BrokenBound(0, int(joint), LimitKind.POSITION, value, bound))
 
 
-def _standing(clock: PlannedClock, grid: PathGrid) -> int | None:
-    """Knot at which the clock stands for good, or for longer than allowed in all; else None."""
+def _standing(model: Model, timed: TimedCurve, grid: PathGrid) -> int | None:
+    """Knot at which the clock stands for good, or nearly so at a singular posture; else None.
+
+    A limit that merely makes a motion slow is no reason to refuse it.
+    """
+    clock = timed.clock
     inner = clock.x[1:-1]
     if np.any(inner <= 0.0):
         return int(np.argmin(inner)) + 1
     shares = np.sqrt(np.maximum(clock.x[:-1], clock.x[1:])) / np.maximum(grid.rates[:-1], grid.rates[1:])
     slow = shares < SLOWEST_SHARE
-    if float(np.sum(np.diff(clock.times)[slow])) > LONGEST_STAND:
-        return int(np.argmin(np.where(slow, shares, np.inf))) + 1
-    return None
+    if float(np.sum(np.diff(clock.times)[slow])) <= LONGEST_STAND:
+        return None
+    knot = int(np.argmin(np.where(slow, shares, np.inf))) + 1
+    q, kinematics = timed.curve.q[knot], model.kinematics
+    _, jacobian = kinematics.difference(q, kinematics.target(*kinematics.tool_pose(q)))
+    values = scaled_singular_values(jacobian[:, model.free], kinematics.description.reach)
+    return knot if values[-1] < SINGULAR_SHARE * values[0] else None
 
 
 def rows_on_clock(model: Model, timed: TimedCurve, ticking: Ticking, least: float) -> PlannedMotion | Refusal:
