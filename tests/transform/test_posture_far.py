@@ -5,8 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from irlx.motion.trapezoid import Trapezoid
+from irlx.pacing.governed_return import governed_reference, way_to_best
+from irlx.pacing.slowdown.model import Model
 from irlx.robot.limits import JointLimits
 from irlx.transform.criteria.posture import Posture
+from irlx.transform.fibre import Fibre
 from irlx.transform.posture_search import closest, nearest_approach, nearest_posture
 from irlx.transform.qp.proxqp import ProxQpSolver
 from irlx.transform.tick import TickProblem, TickSolver
@@ -23,47 +27,101 @@ def projected(arm, q: np.ndarray, gradient: np.ndarray) -> float:
     return float(np.linalg.norm(basis[6:] @ gradient))
 
 
-CHATTERS = pytest.mark.xfail(
-    strict=True, reason="with references up to 3 rad away a third of koch11's ticks never settle"
-)
+SAFE_CURVATURE = 0.4
+"""Least curvature of the distance along the fibre, 1 on a straight one, from which a return is governed."""
+
+
+def tick_towards(arm, q: np.ndarray, reference: np.ndarray, max_iterations: int = 30):
+    """One tick at the tool pose of arm.q from q, drawn to a reference without bounds."""
+    solver = TickSolver(arm.kinematics, ProxQpSolver(), max_iterations=max_iterations)
+    bounds = arm.bounds(np.inf)
+    bounds.lower[:], bounds.upper[:] = -np.inf, np.inf
+    free, criterion = np.ones(arm.n, dtype=bool), Posture(arm.weights, reference)
+    return solver.solve(TickProblem(arm.pose(arm.q), q, bounds, criterion, free))
 
 
 @pytest.mark.req("TRF-05")
-@pytest.mark.parametrize(
-    ("name", "away"),
-    [
-        ("arm7", 1.0),
-        ("arm7", 2.0),
-        ("arm7", 3.0),
-        ("koch11", 1.0),
-        ("koch11", 2.0),
-        pytest.param("koch11", 3.0, marks=CHATTERS),
-    ],
-)
-def test_iteration_towards_a_far_reference_settles(request, name: str, away: float) -> None:
+@pytest.mark.parametrize("away", [1.0, 2.0])
+def test_iteration_towards_a_far_reference_settles(arm, away: float) -> None:
     """At a fixed pose: the tool stays, phi falls, and the tick ends at a rest point in most draws."""
-    arm = request.getfixturevalue(name)
     settled = 0
     for seed in range(12):
         rng = np.random.default_rng(seed)
         reference = arm.q + rng.uniform(-1.0, 1.0, arm.n) * away
         criterion = Posture(arm.weights, reference)
-        solver = TickSolver(arm.kinematics, ProxQpSolver(), max_iterations=200)
-        free, target = np.ones(arm.n, dtype=bool), arm.pose(arm.q)
-        bounds = arm.bounds(np.inf)
-        bounds.lower[:], bounds.upper[:] = -np.inf, np.inf
-        solution = solver.solve(TickProblem(target, arm.q, bounds, criterion, free))
+        solution = tick_towards(arm, arm.q, reference, 200)
         if not solution.solved:
             continue
         settled += 1
         _, position = arm.kinematics.tool_pose(solution.q)
-        assert np.linalg.norm(position - target.translation) < 1e-10, f"seed {seed}"
+        assert np.linalg.norm(position - arm.pose(arm.q).translation) < 1e-10, f"seed {seed}"
         step = solution.q - arm.q
         assert criterion.value(arm.q, step) <= criterion.value(arm.q, np.zeros(arm.n)), f"seed {seed}"
         gradient = criterion.gradient(arm.q, step)
         assert projected(arm, solution.q, gradient) < 1e-6, f"seed {seed}"
         assert solution.iterations < 100, f"seed {seed}"
     assert settled >= 11
+
+
+def governed_walk(arm, goal: np.ndarray, ticks: int = 200) -> tuple[float, list[np.ndarray], float]:
+    """Curvature of the distance at the start, postures of ticks at a fixed pose, s of a tick.
+
+    The reference goes the governed way under joint speeds of 1 rad/s, over a law of 2 s.
+    """
+    free, unlimited = np.ones(arm.n, dtype=bool), JointLimits.unlimited(arm.n)
+    way = way_to_best(Model(arm.kinematics, unlimited, arm.weights, free), arm.q, goal, ProxQpSolver())
+    law, speed = Trapezoid.fastest(1.0, 1.0, 1.0), np.ones(arm.n)
+    reference = governed_reference(goal, way, law, unlimited.with_pair("speed", -speed, speed))
+    wide = np.full(arm.n, np.inf)
+    fibre = Fibre(arm.kinematics, arm.pose(arm.q), reference(0.0), arm.weights, (-wide, wide), free)
+    curvature = float(np.linalg.eigvalsh(fibre.curvature(arm.q, fibre.tangent(arm.q)))[0])
+    rows = [arm.q]
+    for s in law.evaluate(np.linspace(0.0, law.duration, ticks + 1)[1:])[0]:
+        solution = tick_towards(arm, rows[-1], reference(float(s)))
+        if not solution.solved:
+            break
+        rows.append(solution.q)
+    return curvature, rows, law.duration / ticks
+
+
+def assert_governed(arm, goal: np.ndarray, rows: list[np.ndarray], dt: float, told: str) -> None:
+    """Every tick solved, changes of speed below the governed rate of 1 rad/s in 0.2 s, distance falling."""
+    assert len(rows) == 201, told
+    speeds = np.diff(np.array([rows[0], *rows]), axis=0) / dt
+    assert np.max(np.abs(np.diff(speeds, axis=0))) / dt <= 1.0 / 0.2, told
+    away = [float(arm.weights @ (row - goal) ** 2) for row in rows]
+    assert np.all(np.diff(away) <= 1e-9 * away[0]), told
+
+
+@pytest.mark.req("TRF-05")
+@pytest.mark.req("TRF-14")
+@pytest.mark.parametrize("away", [1.0, 2.0, 3.0])
+def test_a_governed_reference_is_never_far(arm, away: float) -> None:
+    """What a tick is drawn to is a step away however far the goal: it settles, and no joint jumps.
+
+    Provided that the distance bends upwards along the fibre by `SAFE_CURVATURE` or more, as it does for
+    nearly all goals drawn here; see the test behind this one.
+    """
+    governed = 0
+    for seed in range(12):
+        goal = arm.q + np.random.default_rng(seed).uniform(-1.0, 1.0, arm.n) * away
+        curvature, rows, dt = governed_walk(arm, goal)
+        if curvature >= SAFE_CURVATURE:
+            assert_governed(arm, goal, rows, dt, f"seed {seed}, curvature {curvature:.3g}")
+            governed += 1
+    assert governed >= 6
+
+
+@pytest.mark.req("TRF-05")
+@pytest.mark.xfail(
+    strict=True, reason="where the distance hardly bends along the fibre, or downwards, it jumps"
+)
+def test_a_goal_on_whose_slope_the_fibre_bends_away(koch11) -> None:
+    """2 rad off the pose the goal's pull against the pose outweighs W: the best posture is no minimum."""
+    goal = koch11.q + np.random.default_rng(4).uniform(-1.0, 1.0, 11) * 2.0
+    curvature, rows, dt = governed_walk(koch11, goal)
+    assert curvature < 0.0
+    assert_governed(koch11, goal, rows, dt, f"curvature {curvature:.3g}")
 
 
 @pytest.mark.req("TRF-05")

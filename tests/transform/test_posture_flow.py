@@ -232,3 +232,23 @@ def test_projected_gradient_is_the_slope_along_the_fibre(arm7):
     (upper if outward > 0 else lower)[joint] = arm7.q[joint]
     held = replace(limits_of(arm7)).with_pair(side, lower, upper)
     assert projected_gradient(arm7.kinematics, arm7.q, konf, arm7.weights, held, free) == 0.0
+
+
+@pytest.mark.req("TRF-15")
+@pytest.mark.parametrize("side", ["lower", "upper", "both"])
+def test_an_elbow_on_its_limit_holds_nobody(arm7, side):
+    """With spherical shoulder and wrist the pose alone decides the elbow: the others go round it."""
+    free = np.ones(7, dtype=bool)
+    konf = flow_of(arm7, arm7.q, drawn(arm7, np.random.default_rng(8)), free).points[-1].copy()
+    konf[3] = arm7.q[3]
+    lower, upper = arm7.lower.copy(), arm7.upper.copy()
+    if side in {"lower", "both"}:
+        lower[3] = arm7.q[3]
+    if side in {"upper", "both"}:
+        upper[3] = arm7.q[3]
+    narrow = JointLimits.unlimited(7).with_pair("position", lower, upper)
+    flow = posture_flow(arm7.kinematics, arm7.q, konf, arm7.weights, narrow, free, ProxQpSolver())
+    assert np.max(np.abs(konf - arm7.q)) > 0.05
+    assert np.max(np.abs(flow.remaining)) <= 1e-6
+    assert np.all((flow.points >= lower) & (flow.points <= upper))
+    assert pose_errors(arm7, arm7.q, flow.points).max() <= ON_POSE

@@ -74,7 +74,7 @@ def pace_path(motion: PathMotion, model: Model, solver: TickSolver) -> PacedPath
     """Rows of a motion: at the programmed speed where every tick can, else slowed where it must be."""
     walked, broken = _walked(motion, model, solver, thorough=False)
     kept = walked.halt is None and broken is None
-    if kept and not (motion.term.draws and _rings(walked.active)):
+    if kept and not (motion.term.draws and _lags(walked.active)):
         return _as_walked(walked)
     found = plan_motion(model, _task(motion))
     if not isinstance(found, Refusal):
@@ -135,6 +135,11 @@ def _planned(motion: PathMotion, model: Model, found: PlannedMotion) -> PacedPat
     )
 
 
-def _rings(active: NDArray[np.int8]) -> bool:
-    """Whether an acceleration bound held a joint: a posture that is drawn back then may swing about it."""
-    return bool(np.any(np.abs(active) == 1 + BoundSource.ACCELERATION))
+def _lags(active: NDArray[np.int8]) -> bool:
+    """Whether a speed or acceleration bound kept a joint behind the posture it is drawn to.
+
+    Nothing tells it to slow down before it has caught up: it may swing about the posture, catch up with a
+    jump of its speed where no acceleration limit is known, or run on at full speed into the stop of the move.
+    """
+    source = np.abs(active)
+    return bool(np.any((source == 1 + BoundSource.ACCELERATION) | (source == 1 + BoundSource.SPEED)))

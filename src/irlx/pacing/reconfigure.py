@@ -23,7 +23,7 @@ from irlx.pacing.slowdown.clock_bounds import clock_bounds
 from irlx.pacing.slowdown.curve import JointCurve
 from irlx.pacing.slowdown.ladder import TimedCurve
 from irlx.pacing.slowdown.model import Model
-from irlx.pacing.slowdown.planned import Refusal, Ticking, rows_on_clock
+from irlx.pacing.slowdown.planned import PlannedMotion, Refusal, Ticking, rows_on_clock
 from irlx.pacing.snap import SAME_VALUE
 from irlx.pacing.touching import touching
 from irlx.robot.limits import JointLimits
@@ -31,6 +31,8 @@ from irlx.transform.posture_flow import PostureFlow, posture_flow
 from irlx.transform.qp.solver import QpSolver
 
 Array = NDArray[np.float64]
+
+_WIDENINGS = (4.0, 16.0, 64.0)
 
 
 @dataclass(frozen=True)
@@ -65,7 +67,7 @@ def reconfigured(
     flow = posture_flow(model.kinematics, q, konf, model.weights, limits, free, qp)
     if len(flow.points) == 1:
         return Reconfigured(flow, None, ~free)
-    rows, way = _rows(mobile, flow.points, dt, first_tick, place)
+    rows, way = _rows(mobile, flow, dt, first_tick, place)
     return Reconfigured(flow, _motion_rows(model, block, q, rows, way, dt, first_tick), ~free)
 
 
@@ -90,8 +92,25 @@ def _either_way(limits: JointLimits, kind: str) -> Array:
     return np.asarray(np.minimum(-lower, upper))
 
 
-def _rows(model: Model, points: Array, dt: float, first_tick: int, place: Place) -> tuple[Array, Array]:
-    """Rows (N, n) at ticks 1 .. N along the curve through points, and the way (N,) at them."""
+def _rows(model: Model, flow: PostureFlow, dt: float, first_tick: int, place: Place) -> tuple[Array, Array]:
+    """Rows (N, n) at ticks 1 .. N along the way of a flow, and the way (N,) at them.
+
+    A curve that swings beyond a position limit between its points is laid further inside and tried again.
+    """
+    found = _on_curve(model, flow.points, dt, place)
+    for widening in _WIDENINGS:
+        if not isinstance(found, Refusal):
+            break
+        found = _on_curve(model, flow.further_inside(widening), dt, place)
+    if isinstance(found, Refusal):
+        if found.broken is None:
+            raise ArithmeticError("a posture curve was refused without a reason: the planner is at fault")
+        raise PacingError(explain_broken_row(found.broken, first_tick, model.kinematics.description, place))
+    return found.q, np.array([demand.s for demand in found.demands])
+
+
+def _on_curve(model: Model, points: Array, dt: float, place: Place) -> PlannedMotion | Refusal:
+    """Rows along the curve through points (K, n) on its fastest clock."""
     knots = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))))
     curve = JointCurve(knots, points)
     clock = plan_clock(clock_bounds(curve, model.limits, np.full(knots.size, inf), inf))
@@ -103,12 +122,7 @@ def _rows(model: Model, points: Array, dt: float, first_tick: int, place: Place)
         return [Demand(k + 1, float(s), position, rotation, np.zeros(6)) for k, s in enumerate(ticking.s)]
 
     ticking = Ticking(dt, lambda duration: ticks_of_move(duration, dt, place), demands_of)
-    found = rows_on_clock(model, TimedCurve(curve, clock), ticking, 0.0)
-    if isinstance(found, Refusal):
-        if found.broken is None:
-            raise ArithmeticError("a posture curve was refused without a reason: the planner is at fault")
-        raise PacingError(explain_broken_row(found.broken, first_tick, model.kinematics.description, place))
-    return found.q, np.array([demand.s for demand in found.demands])
+    return rows_on_clock(model, TimedCurve(curve, clock), ticking, 0.0)
 
 
 def _motion_rows(

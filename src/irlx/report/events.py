@@ -42,9 +42,9 @@ class LimitActive:
 class Slowed:
     """The tool ran slower than programmed from `first_tick` to `last_tick`, for one joint's limit.
 
-    `line` of the move in the program; `way` of `length` (m, or rad where the tool only `turns`) where most
-    speed is missing: `achieved` instead of `requested` (m/s or rad/s), for the `kind` (speed or acceleration) limit
-    `bound` of `joint` ('' where no single joint decides); `lost` time, s.
+    `line` of the move in the program; `way` of `length` (m, or rad where the tool only `turns`) where most speed
+    is missing: `achieved` instead of `requested` (m/s or rad/s), for the `kind` (speed or acceleration)
+    limit `bound` of `joint` ('' where no single joint decides); `lost` time, s.
     """
 
     line: int

@@ -102,11 +102,11 @@ class Fibre:
         if inside is not None:
             return inside
         nowhere = np.full(q.size, np.inf)
-        found = self._newton(found, free, (-nowhere, nowhere))
-        if found is None:
+        outside = self._newton(found, free, (-nowhere, nowhere))
+        if outside is None:
             return None
-        back = np.where(free, np.clip(found, self.lower, self.upper), found)
-        return back if float(np.max(np.abs(back - found))) <= _BACK_INSIDE else None
+        back = np.where(free, np.clip(outside, self.lower, self.upper), outside)
+        return back if float(np.max(np.abs(back - outside))) <= _BACK_INSIDE else None
 
     def _newton(self, q: Array, free: NDArray[np.bool_], bounds: tuple[Array, Array]) -> Array | None:
         """Posture on the pose by steps of the joints `free` (n,) that keep `bounds`; None where they fail."""
@@ -161,15 +161,11 @@ class Fibre:
         basis = self._basis(jacobian, self.free)
         if basis.shape[1] == 0:
             return pressed
-        # What no motion along the fibre moves, as the elbow of an arm with spherical shoulder and wrist, is not
-        # pressed: held back by rounding alone it would hold all the others.
-        lengths = np.max(np.abs(basis), axis=1)
-        turning = self.free & (lengths > _UNMOVED * float(np.max(lengths)))
         descent = -basis @ (basis.T @ gradient)
         lower = np.where(at_lower, 0.0, -np.inf) - descent
         upper = np.where(at_upper, 0.0, np.inf) - descent
         # Steepest descent within the cone that the limits leave: its held joints are the pressed ones.
-        pressed[turning] = self._qp.solve(basis[turning], lower[turning], upper[turning]).active != 0
+        pressed[self.free] = self._qp.solve(basis[self.free], lower[self.free], upper[self.free]).active != 0
         return pressed
 
     def _basis(self, jacobian: Array, movable: NDArray[np.bool_]) -> Array:
@@ -182,6 +178,10 @@ class Fibre:
             scale = 1.0 / np.sqrt(self.weights[movable])
             orthonormal, _ = np.linalg.qr((jacobian[:, movable] * scale).T, mode="complete")
             full[movable] = scale[:, None] * orthonormal[:, tasks:]
+            # What no motion along the fibre moves, as the elbow of an arm with spherical shoulder and wrist,
+            # must not move by rounding: standing on its limit it would hold all the others.
+            longest = np.max(np.abs(full), axis=1, keepdims=True)
+            full = np.where(longest > _UNMOVED * float(np.max(longest)), full, 0.0)
         return full
 
     def curvature(self, q: Array, tangent: Tangent) -> Array:

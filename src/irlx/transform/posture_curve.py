@@ -26,37 +26,56 @@ _LEAD = 12
 _OF_WIDTH = 0.25
 _OF_WAY = 1e-3
 _STILL = 1e-9
+_FINER = (1.0, 0.25, 0.0625)
+_LEAST_APART = 0.01
 
 
-def even_curve(fibre: Fibre, iterates: Array, stride: float, reserve: float = RESERVE) -> Array:
+def even_curve(fibre: Fibre, iterates: Array, stride: float, widening: float = 1.0) -> Array:
     """Points (K, n) of the curve through iterates (M, n), M >= 2, evenly spaced by arc length.
 
     Iterates closer than 0.3 `stride` are passed over; a cubic spline through the others gives the points, a
     binomial mean over some 0.06 rad|m rounds the corners where a joint met its limit, and Newton steps within
     the limits lead each onto the pose. First and last are kept bit by bit. A spline through points that lie
-    on a limit swings beyond it between them: inner points keep `reserve` (rad or m) away, see `_kept`.
-    Where a correction fails, the iterates themselves are returned.
+    on a limit swings beyond it between them: inner points keep `RESERVE` away, `widening` times as much.
+    Where a correction fails, the fibre bends too sharply: the same four and sixteen times finer, and at last
+    the iterates themselves.
     """
+    for finer in _FINER:
+        knots = _thinned(iterates, _THINNED * stride * finer)
+        curve = _curve(fibre, iterates, knots, SPACING * finer, widening)
+        if curve is not None:
+            return curve
+    return _thinned(iterates, _LEAST_APART * stride)
+
+
+def _curve(fibre: Fibre, iterates: Array, knots: Array, spacing: float, widening: float) -> Array | None:
+    """`even_curve` through knots (L, n) for one spacing; None where a point does not come onto the pose."""
     from scipy.interpolate import make_interp_spline
 
-    knots = _thinned(iterates, _THINNED * stride)
     way = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(knots, axis=0), axis=1))))
-    pieces = max(LEAST_PIECES, ceil(way[-1] / SPACING))
+    pieces = max(LEAST_PIECES, ceil(way[-1] / spacing))
     due = np.linspace(0.0, way[-1], pieces + 1)
     spline = make_interp_spline(way, knots, k=3 if len(knots) >= 4 else 1)
     still = np.ptp(iterates, axis=0) <= _STILL
-    lower, upper = _kept(fibre, pieces + 1, min(reserve, _OF_WAY * float(way[-1])), still)
+    reserve = widening * min(RESERVE, _OF_WAY * float(way[-1]))
+    lower, upper = _kept(fibre, pieces + 1, reserve, still)
     points = _rounded(np.clip(spline(due), lower, upper))
     points[:, still] = knots[0, still]
     curve = [iterates[0]]
     for point, low, high in zip(points[1:-1], lower[1:-1], upper[1:-1], strict=True):
-        corrected = fibre.within(low, high).onto_pose(point)
+        corrected = _onto_pose(fibre.within(low, high), point, 0.5 * spacing)
         if corrected is None:
-            corrected = fibre.onto_pose(point)
+            corrected = _onto_pose(fibre, point, 0.5 * spacing)
         if corrected is None:
-            return iterates
+            return None
         curve.append(corrected)
     return np.array([*curve, iterates[-1]])
+
+
+def _onto_pose(fibre: Fibre, point: Array, nearest: float) -> Array | None:
+    """The point led onto the pose; None where that leads further away than `nearest` (rad or m)."""
+    found = fibre.onto_pose(point)
+    return found if found is not None and float(np.max(np.abs(found - point))) <= nearest else None
 
 
 def _kept(fibre: Fibre, points: int, reserve: float, still: NDArray[np.bool_]) -> tuple[Array, Array]:

@@ -50,6 +50,7 @@ _ROUNDING = 1e-15
 _HALVINGS = 30
 _FINE_STEP = 1e-5
 _FALLING = -1e-6
+_CORRECTION = 0.25
 _BRAKING_STEPS = 12.0
 _SEARCH = 10
 _LEAST_DAMPING = 1e-9
@@ -76,15 +77,22 @@ class PostureFlow:
     `points` (K, n) rad or m: evenly spaced, the first one the start, the last one the end, all on the pose
     and within the limits; one point where nothing moves. `reached`: no joint is further than 1e-6 from konf.
     `remaining` (n,): konf - end, frozen joints included. `projected_gradient` at the end, see
-    `projected_gradient`; `steps` of the flow; `end` says why it ended.
+    `projected_gradient`; `steps` of the flow; `end` says why it ended. `iterates` (M, n): postures of the
+    `fibre` that the flow went through.
     """
 
     points: Array
+    fibre: Fibre
+    iterates: Array
     reached: bool
     remaining: Array
     projected_gradient: float
     steps: int
     end: FlowEnd
+
+    def further_inside(self, widening: float) -> Array:
+        """Points of the same way that keep `widening` times as far away from position limits."""
+        return even_curve(self.fibre, self.iterates, STRIDE, widening)
 
 
 def posture_flow(
@@ -115,6 +123,8 @@ def posture_flow(
     points = even_curve(fibre, np.array(iterates), STRIDE) if len(iterates) > 1 else np.array([q])
     return PostureFlow(
         points,
+        fibre,
+        np.array(iterates),
         reached,
         remaining,
         fibre.tangent(last).projected,
@@ -250,7 +260,7 @@ def _shortened(fibre: Fibre, q: Array, tangent: Tangent, step: Array) -> tuple[A
     """The step, halved until the posture it leads to, back on the pose, is nearer to konf; None if never."""
     for _ in range(_HALVINGS):
         new = _back_on_pose(fibre, q + step, tangent)
-        if new is not None and float(np.max(np.abs(new - q))) <= 2.0 * STRIDE:
+        if new is not None and _follows(q, step, new):
             after = fibre.tangent(new)
             # So near to rest that rounding hides the decrease, the gradient must fall instead.
             fine = float(np.max(np.abs(step))) <= _FINE_STEP and after.projected <= 0.5 * tangent.projected
@@ -260,6 +270,15 @@ def _shortened(fibre: Fibre, q: Array, tangent: Tangent, step: Array) -> tuple[A
         if float(np.max(np.abs(step), initial=0.0)) <= 1e-15:
             return None
     return None
+
+
+def _follows(q: Array, step: Array, new: Array) -> bool:
+    """Whether the way back onto the pose is a correction of the step and not another way.
+
+    Near a singular posture the fibre bends within a step, and beyond the bend lies another part of it.
+    """
+    off, length = float(np.max(np.abs(new - q - step))), float(np.max(np.abs(step)))
+    return off <= max(_CORRECTION * length, _FINE_STEP)
 
 
 def _back_on_pose(fibre: Fibre, q: Array, tangent: Tangent) -> Array | None:
