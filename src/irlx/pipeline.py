@@ -131,10 +131,23 @@ class Execution:
         self._pacer = Pacer(setup, self._locate)
 
     def __iter__(self) -> Iterator[Executed]:
-        """Execute the program block by block. Raises IrlxError where it cannot go on."""
-        for block in self._blocks(self._pacer.answer):
-            tick, settled = self._pacer.tick, self._pacer.settled(block)
-            yield Executed(settled, tick, self._pacer.execute(settled))
+        """Execute the program block by block. Raises IrlxError where it cannot go on (IRL090: by a fault)."""
+        source = self._blocks(self._pacer.answer)
+        while True:
+            try:
+                block = next(source)
+                tick, settled = self._pacer.tick, self._pacer.settled(block)
+                executed = Executed(settled, tick, self._pacer.execute(settled))
+            except StopIteration:
+                return
+            except IrlxError:
+                raise
+            except Exception as error:
+                if os.environ.get("IRLX_DEBUG"):
+                    raise
+                # A fault of irlx itself must not cost what was executed before it.
+                raise IrlxError(report("IRL090", cause=f"{type(error).__name__}: {error}")) from error
+            yield executed
 
     def blocks(self) -> Iterator[Block]:
         """Blocks of the program; nothing moves until it asks for the posture that its moves lead to."""
@@ -245,13 +258,8 @@ def execute(job: Job, progress: Progress | None = None, explain_tick: int | None
     except IrlxError as error:
         known = (*_warnings(job), *execution.warnings)
         partial = recording.finish(False, (*known, *error.diagnostics))
+        partial = replace(partial, explanation=explanation)
         raise RunError((*error.diagnostics, *known), partial) from error
-    except Exception as error:
-        if os.environ.get("IRLX_DEBUG"):
-            raise
-        # A fault of irlx itself must not cost what was executed before it.
-        fault = report("IRL090", cause=f"{type(error).__name__}: {error}")
-        raise RunError((fault,), recording.finish(False, (fault,))) from error
     except KeyboardInterrupt as interrupt:
         raise RunInterrupted(recording.finish(False, (*_warnings(job), *execution.warnings))) from interrupt
     finished = recording.finish(True, (*_warnings(job), *execution.warnings))

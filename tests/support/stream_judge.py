@@ -78,13 +78,19 @@ class OnWay:
     distance: np.ndarray
     angle: np.ndarray
     share: np.ndarray
+    grain: float = 0.0
+    """Rounding of positions as a share of the way: much on a way of nanometres."""
 
     @property
     def kept(self) -> bool:
         """On the way everywhere, never backwards, and at its end at last."""
         off = max(float(self.distance.max()), float(self.angle.max()))
         back = float(np.min(np.diff(self.share), initial=0.0))
-        return off <= ON_PATH and back >= -1e-9 and abs(float(self.share[-1]) - 1.0) <= 1e-6
+        return (
+            off <= ON_PATH
+            and back >= -1e-9 - self.grain
+            and abs(float(self.share[-1]) - 1.0) <= 1e-6 + self.grain
+        )
 
 
 def on_line(
@@ -105,7 +111,8 @@ def on_line(
         share = turned @ turn / angle**2
     wanted = start[1] * Rotation.from_rotvec(share[:, None] * turn)
     distance = np.linalg.norm(positions - start[0] - share[:, None] * way, axis=1)
-    return OnWay(distance, (wanted.inv() * rotations).magnitude(), share)
+    grain = 1e-14 / max(length, 1e-4 * angle)
+    return OnWay(distance, (wanted.inv() * rotations).magnitude(), share, grain)
 
 
 def on_circle(

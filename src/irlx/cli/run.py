@@ -75,6 +75,8 @@ def command(options: argparse.Namespace) -> int:
             run = execute(job, progress, options.explain_tick)
     except RunError as error:
         print_diagnostics(error.diagnostics)
+        if not options.json:
+            _print_tick(error.run, options)
         _keep_partial(error.run, outputs, options)
         return exit_code(error.diagnostics)
     except RunInterrupted as interrupt:
@@ -172,7 +174,7 @@ def _print_tick(run: Run, options: argparse.Namespace) -> None:
 
     if options.explain_tick is None:
         return
-    words = f"tick {options.explain_tick}: no motion has it; the run has ticks 0 to {len(run.t) - 1}"
+    words = f"tick {options.explain_tick}: no motion has it; motions have ticks 1 to {len(run.t) - 1}"
     if run.explanation is not None:
         words = tick_text(run.explanation)
     print(encodable(words, sys.stdout) + "\n")

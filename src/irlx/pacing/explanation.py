@@ -128,13 +128,14 @@ def _way_of_pacing(rows: MotionRows, row: int) -> str:
 def _path_tick(path: PathPart, demand: Demand, length: float) -> PathTick:
     from scipy.spatial.transform import Rotation
 
+    scale = path.angle_per_s if path.is_turn else 1.0
     part = demand.twist[3:] if path.is_turn else demand.twist[:3]
     return PathTick(
-        demand.s,
-        length,
+        demand.s * scale,
+        length * scale,
         path.is_turn,
         float(np.linalg.norm(part)),
-        float(path.law.rates_at(np.array([demand.s]))[0]),
+        scale * float(path.law.rates_at(np.array([demand.s]))[0]),
         tuple(float(x) for x in demand.position),
         tuple(float(x) for x in Rotation.from_matrix(demand.rotation).as_quat()),
         tuple(float(x) for x in demand.twist),

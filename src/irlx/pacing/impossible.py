@@ -30,6 +30,7 @@ Array = NDArray[np.float64]
 
 _AT_BOUND = 1e-6
 _NOISE = 1e-9
+_PLANNED_AT = 3e-4
 _LIMIT_NAMES = {
     BoundSource.POSITION: "position",
     BoundSource.SPEED: "speed",
@@ -101,7 +102,8 @@ def explain_failure(
         poses = path.poses(np.array([refusal.s]))
         demand = Demand(tick, refusal.s, poses.position[0], poses.rotation[0], np.zeros(6))
         bounds = StepBounds(-nowhere, nowhere, source, source)
-        return explain_halt(Halt(demand, bounds, refusal.solution), around, path, goal, place)
+        solution = refusal.solution._replace(active=_near_limits(refusal.solution.q, around.limits))
+        return explain_halt(Halt(demand, bounds, solution), around, path, goal, place)
     if refusal.timed is not None:
         return _explain_standing(refusal.timed, refusal.knot, around, path, place)
     broken = refusal.broken or failure.broken
@@ -138,6 +140,21 @@ def _explain_standing(
     )
 
 
+def _near_limits(q: Array, limits: JointLimits) -> NDArray[np.int8]:
+    """+1 / -1 for joints (n,) at their upper / lower position limit, as near as a plan goes to it."""
+    upper, lower = limits.position_upper - q <= _PLANNED_AT, q - limits.position_lower <= _PLANNED_AT
+    return np.where(upper, 1, np.where(lower, -1, 0)).astype(np.int8)
+
+
+def _may_not_move(joint: int, around: Surroundings) -> str:
+    """Which limit of 0 keeps a joint where it is, or ''."""
+    low, high = around.limits.pair("speed")
+    if low[joint] == 0.0 and high[joint] == 0.0:
+        return "speed"
+    low, high = around.limits.pair("acceleration")
+    return "acceleration" if low[joint] == 0.0 or high[joint] == 0.0 else ""
+
+
 def _way_unit(path: PosePath) -> tuple[str, float]:
     return ("deg", float(np.degrees(1.0))) if path.is_pure_turn else ("mm", 1000.0)
 
@@ -170,6 +187,10 @@ def _held_joints(halt: Halt, around: Surroundings) -> list[str]:
     for joint in range(len(robot.axes)):
         name = robot.axes[joint].name
         if not around.free[joint]:
+            continue
+        kind = _may_not_move(joint, around)
+        if kind:
+            words.append(f"{name} may not move (its {kind} limit is 0)")
             continue
         if bounds.lower[joint] > bounds.upper[joint]:
             low, high = (

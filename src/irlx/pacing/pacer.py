@@ -69,6 +69,10 @@ FARTHEST_TARGET = 1e9
 """Coordinate (m) beyond which a target is out of reach of any robot, and of squares in float64."""
 
 
+_TURN_RULES = 1e3
+"""A path that turns by more than this many rad per m is told in angles: its way is next to nothing."""
+
+
 @dataclass(frozen=True)
 class PacingSetup:
     """The robot as a run finds it: model, own limits, weights (n,), start posture (n,), tick in s.
@@ -266,7 +270,8 @@ class Pacer:
                 paced.demands,
                 term,
                 plan.programmed,
-                plan.path.is_pure_turn,
+                plan.path.is_pure_turn or plan.path.turn_rate > _TURN_RULES,
+                plan.path.turn_rate,
                 paced.planned,
                 paced.slowings,
             ),

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from irlx.diagnostics import IrlxError
 from irlx.motion.plan_path import PlannedPath
 from irlx.pacing.clock import Clock, programmed_clock
 from irlx.pacing.demand import Demand, DemandModifier, demands
@@ -76,7 +77,13 @@ def pace_path(motion: PathMotion, model: Model, solver: TickSolver) -> PacedPath
     kept = walked.halt is None and broken is None
     if kept and not (motion.term.draws and _lags(walked.active)):
         return _as_walked(walked)
-    found = plan_motion(model, _task(motion))
+    try:
+        found = plan_motion(model, _task(motion))
+    except IrlxError:
+        # Too slow for the caller, or too many ticks: a walk that keeps everything still serves.
+        if kept:
+            return _as_walked(walked)
+        raise
     if not isinstance(found, Refusal):
         return _planned(motion, model, found)
     if not kept:
@@ -119,6 +126,7 @@ def _task(motion: PathMotion) -> MotionTask:
         motion.start,
         motion.term.at,
         Ticking(motion.dt, motion.ticks_of, motion.demands_of),
+        motion.term.draws,
     )
 
 

@@ -22,14 +22,16 @@ class PathPart:
     """What a motion along a path has beside its rows.
 
     `demands` of the rows (the hold tick has none), posture `term` in force, the programmed `law`;
-    `is_turn`: s is an angle (rad); `planned`: the motion was planned as a whole because ordinary ticks
-    would have broken a bound; `slowings`: the stretches that took longer than programmed.
+    `is_turn`: what counts is an angle, of `angle_per_s` rad for each unit of s; `planned`: the motion was
+    planned as a whole because ordinary ticks would have broken a bound; `slowings`: the stretches that took
+    longer than programmed.
     """
 
     demands: tuple[Demand, ...]
     term: PostureTerm
     law: Trapezoid
     is_turn: bool
+    angle_per_s: float
     planned: bool
     slowings: tuple[Slowing, ...]
 

@@ -43,7 +43,7 @@ def slowings(clock: PlannedClock, rates: Array, factor: float, dt: float, rows: 
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         share = np.where(rates > 0.0, np.sqrt(clock.x) / rates, 1.0)
-    return tuple(_slowing(clock, rates, share, span, factor, dt, rows) for span in _spans(share < SLOWED))
+    return tuple(_slowing(clock, rates, share, span, factor, dt, rows) for span in spans(share < SLOWED))
 
 
 def _slowing(
@@ -79,7 +79,7 @@ def _slowing(
     )
 
 
-def _spans(mask: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
+def spans(mask: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
     """First and last index of every run of True."""
     edges = np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8))
     for first, beyond in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):

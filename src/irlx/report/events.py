@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.pacing.rows import MotionRows
+from irlx.pacing.rows import MotionRows, PathPart
 from irlx.pacing.slowdown.clock_bounds import Governor
-from irlx.pacing.slowing import Slowing
+from irlx.pacing.slowing import Slowing, spans
 from irlx.robot.limits import JointLimits
 
 SOURCES = ("position", "speed", "acceleration", "braking")
@@ -42,8 +42,8 @@ class LimitActive:
 class Slowed:
     """The tool ran slower than programmed from `first_tick` to `last_tick`, for one joint's limit.
 
-    `line` of the move in the program; `way` of `length` (m, or rad where the tool only `turns`) where most speed
-    is missing: `achieved` instead of `requested` (m/s or rad/s), for the `kind` (speed or acceleration)
+    `line` of the move in the program; `way` of `length` (m, or rad where the tool only `turns`) where most
+    speed is missing: `achieved` instead of `requested` (m/s or rad/s), for the `kind` (speed or acceleration)
     limit `bound` of `joint` ('' where no single joint decides); `lost` time, s.
     """
 
@@ -73,20 +73,19 @@ def slowed_events(
     """Events of the slowed stretches of one motion."""
     if rows.path is None:
         return ()
-    return tuple(
-        _slowed(slowing, rows, rows.path.is_turn, limits, joint_names, dt) for slowing in rows.path.slowings
-    )
+    return tuple(_slowed(slowing, rows, rows.path, limits, joint_names, dt) for slowing in rows.path.slowings)
 
 
 def _slowed(
     slowing: Slowing,
     rows: MotionRows,
-    turns: bool,
+    path: PathPart,
     limits: JointLimits,
     joint_names: Sequence[str],
     dt: float,
 ) -> Slowed:
     first, last = rows.first_tick + slowing.first_row, rows.first_tick + slowing.last_row
+    scale = path.angle_per_s if path.is_turn else 1.0
     known = slowing.joint >= 0 and slowing.governor is not Governor.PROGRAM
     kind = slowing.governor.name.lower() if known else ""
     # Of a limit that differs by direction the narrower side is told.
@@ -97,11 +96,11 @@ def _slowed(
         last_tick=last,
         first_time=first * dt,
         last_time=last * dt,
-        way=slowing.s,
-        length=rows.length,
-        turns=turns,
-        requested=slowing.requested,
-        achieved=slowing.achieved,
+        way=slowing.s * scale,
+        length=rows.length * scale,
+        turns=path.is_turn,
+        requested=slowing.requested * scale,
+        achieved=slowing.achieved * scale,
         joint=joint_names[slowing.joint] if known else "",
         kind=kind,
         bound=bound,
@@ -115,17 +114,10 @@ def limit_events(active: NDArray[np.int8], joint_names: Sequence[str], dt: float
         LimitActive(name, SOURCES[abs(flag) - 1], "upper" if flag > 0 else "lower", *span, *_times(span, dt))
         for joint, name in enumerate(joint_names)
         for flag in (int(value) for value in np.unique(active[:, joint]) if value)
-        for span in _spans(active[:, joint] == flag)
+        for span in spans(active[:, joint] == flag)
     ]
     return tuple(sorted(found, key=lambda event: (event.first_tick, event.joint)))
 
 
 def _times(span: tuple[int, int], dt: float) -> tuple[float, float]:
     return span[0] * dt, span[1] * dt
-
-
-def _spans(mask: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
-    """First and last index of every run of True."""
-    edges = np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8))
-    for first, beyond in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
-        yield int(first), int(beyond) - 1

@@ -39,8 +39,8 @@ class CriterionPace:
         """
         share = self.share(problem.twist, problem.hessian, d)
         taken = d
-        if share != 1.0:
-            along_path = path_step(problem)
+        along_path = _along_path(problem) if share != 1.0 else None
+        if along_path is not None:
             taken = along_path + share * (d - along_path)
             # The shortest way onto the path may lead out of the bounds; the QP's step never does.
             if not within(taken, problem.lower, problem.upper):
@@ -72,3 +72,11 @@ class CriterionPace:
 
 def _nearly_met(twist: Array) -> bool:
     return float(np.max(np.abs(twist))) <= _PATH_NEARLY_MET
+
+
+def _along_path(problem: StepProblem) -> Array | None:
+    """The shortest step that meets the pose; None where the Jacobian has lost its rank."""
+    try:
+        return path_step(problem)
+    except np.linalg.LinAlgError:
+        return None

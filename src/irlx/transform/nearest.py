@@ -35,7 +35,8 @@ def damped_step(problem: StepProblem, reach: float) -> Array:
     rows = problem.jacobian * row_scale[:, None]
     scaled = rows / problem.hessian
     gram = scaled @ rows.T
-    damping = _DAMPING**2 * float(np.trace(gram))
+    # Without any joint that moves the Gram matrix is zero, and so is the step.
+    damping = _DAMPING**2 * float(np.trace(gram)) or 1.0
     k = np.linalg.solve(gram + damping * np.eye(6), problem.twist * row_scale)
     return np.asarray(scaled.T @ k)
 

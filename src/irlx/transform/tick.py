@@ -162,7 +162,9 @@ class TickSolver:
             whole = further
             if done:
                 active = np.zeros(joints, dtype=np.int8)
-                return TickSolution(TickStatus.SOLVED, q + whole, active, twist, iteration)
+                # A frozen -0.0 plus 0.0 would be 0.0.
+                reached = np.where(free, q + whole, q) if some_frozen else q + whole
+                return TickSolution(TickStatus.SOLVED, reached, active, twist, iteration)
         return whole
 
     def _newton(self, problem: TickProblem, whole: Array) -> TickSolution | TickStatus:

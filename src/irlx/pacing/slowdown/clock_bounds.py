@@ -150,7 +150,7 @@ def _lines(
     top = np.where(flat, np.inf, np.where(safe > 0.0, high, low) / safe)
     bottom = np.where(flat, -np.inf, np.where(safe > 0.0, low, high) / safe)
     slope = np.where(flat, 0.0, -second / safe)
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         bend = np.where(second > 0.0, high / second, np.where(second < 0.0, low / second, np.inf))
     bend = np.where(flat, bend, np.inf).reshape(intervals, -1)
     worst = np.argmin(bend, axis=1)
@@ -177,7 +177,7 @@ def _meeting_points(top: Array, bottom: Array, slope: Array, line_joint: Joints)
         # Line l rises towards line k from below where its slope is the larger one.
         rise = slope[part, None, :] - slope[part, :, None]
         room = top[part, :, None] - bottom[part, None, :]
-        with np.errstate(divide="ignore", invalid="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             meet = np.where(rise > 0.0, room / rise, np.inf).reshape(len(rise), -1)
         # A top and a bottom at infinity meet nowhere.
         meet = np.where(np.isnan(meet), np.inf, meet)

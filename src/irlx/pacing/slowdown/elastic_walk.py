@@ -172,7 +172,9 @@ class _Stretch:
             largest = float(np.max(np.abs(change), initial=0.0))
             whole = whole + change * min(1.0, _LONGEST / max(largest, 1e-300))
             if largest <= _SETTLED:
-                return whole, stretch
+                # Where joints are held a step may be small without leading anywhere.
+                left, _ = self._model.kinematics.difference(self._problem.q + whole, self._problem.target)
+                return (whole, stretch) if float(np.max(np.abs(left))) <= _SETTLED else None
         return None
 
     def _round(self, whole: Array) -> tuple[Array, float] | None:

@@ -24,6 +24,9 @@ LONG_MOTION = 60.0
 
 LEAST_INTERVALS = 40
 
+MOST_INTERVALS = 20_000
+"""More knots would cost time and memory; a motion this long has them close enough."""
+
 _NEAREST_CORNERS = 1e-4
 """Corners closer than this part of an interval are one: a curve through knots so close bends by rounding."""
 
@@ -55,7 +58,7 @@ def path_grid(path: PosePath, law: Trapezoid) -> PathGrid:
     speed, at least `LEAST_INTERVALS` in all; a clock whose knots miss the corners loses 1E-3 of its time.
     """
     step = float(np.clip(STEP * law.duration / LONG_MOTION * 4.0, STEP, LONG_STEP))
-    width = min(law.speed * step, path.length / LEAST_INTERVALS)
+    width = min(max(law.speed * step, path.length / MOST_INTERVALS), path.length / LEAST_INTERVALS)
     corners = _apart(law.corners, _NEAREST_CORNERS * width)
     pieces = [
         np.linspace(start, end, max(1, int(np.ceil((end - start) / width - 1e-9))) + 1)[1:]

@@ -17,6 +17,9 @@ from irlx.robot.limits import JointLimits
 Array = NDArray[np.float64]
 
 
+_NO_WAY = 1e-10
+
+
 @dataclass(frozen=True)
 class Model:
     """Kinematics, limits in force, joint weights (n,), and which joints are not frozen (n,)."""
@@ -65,7 +68,12 @@ class Model:
         for _ in range(rounds):
             twists, jacobians = self.differences(moved, targets)
             scaled = jacobians * inverse
-            k = np.linalg.solve(scaled @ np.swapaxes(jacobians, 1, 2), twists[:, :, None])
+            gram = scaled @ np.swapaxes(jacobians, 1, 2)
+            if self.freedom >= 0:
+                k = np.linalg.solve(gram, twists[:, :, None])
+            else:
+                # Fewer joints than the pose has coordinates: what they can do of it.
+                k = np.linalg.pinv(gram, rcond=_NO_WAY, hermitian=True) @ twists[:, :, None]
             moved[:, self.free] += (np.swapaxes(scaled, 1, 2) @ k)[:, :, 0]
         return OntoPath(moved, twists, jacobians)
 

@@ -15,6 +15,7 @@ from irlx.pacing.clock import Clock
 from irlx.pacing.demand import Demand
 from irlx.pacing.row_check import BrokenBound, excess_of
 from irlx.pacing.slowdown.clock import PlannedClock
+from irlx.pacing.slowdown.drawn_end import with_drawn_end
 from irlx.pacing.slowdown.elastic_walk import elastic_walk
 from irlx.pacing.slowdown.grid import PathGrid, path_grid
 from irlx.pacing.slowdown.ladder import TimedCurve, timed_curves
@@ -85,7 +86,7 @@ class Ticking:
 class MotionTask:
     """A motion to plan from posture `start` (n,): its path, programmed law, criterion by path parameter.
 
-    `acc` is the largest |d2s/dt2|.
+    `acc` is the largest |d2s/dt2|; `draws` tells that the criterion draws the joints to a posture.
     """
 
     path: PosePath
@@ -94,6 +95,7 @@ class MotionTask:
     start: Array
     criterion_of: Callable[[float], Criterion]
     ticking: Ticking
+    draws: bool = False
 
 
 def plan_motion(model: Model, task: MotionTask) -> PlannedMotion | Refusal:
@@ -141,14 +143,18 @@ def _with_reserve(
     if passage.stopped is not None:
         interval, solution = passage.stopped
         return Refusal(float(grid.s[interval + 1]), solution=solution)
-    curves = timed_curves(model, grid, passage.q, bounds, task.acc)
+    q = passage.q
+    if task.draws:
+        q = with_drawn_end(model, grid, q, bounds, task.criterion_of(float(grid.s[-1])))
+    curves = timed_curves(model, grid, q, bounds, task.acc)
     if not curves:
-        return _outside(model, grid, passage.q)
+        return _outside(model, grid, q)
     standing = _standing(model, curves[0], grid)
     if standing is not None:
         return Refusal(float(grid.s[standing]), timed=curves[0], knot=standing)
     found: PlannedMotion | Refusal = Refusal(0.0)
-    for timed in curves:
+    # A rougher curve may have places where its clock stands, although the best one has none.
+    for timed in (timed for timed in curves if np.isfinite(timed.clock.duration)):
         # The path correction of a rough curve may pass a position limit on which a joint starts.
         try:
             found = rows_on_clock(model, timed, task.ticking, float(np.sum(grid.times)))

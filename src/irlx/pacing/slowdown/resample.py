@@ -33,6 +33,8 @@ def resample(model: Model, curve: JointCurve, s: Array, poses: Poses) -> Array:
     poor = np.flatnonzero(np.max(np.abs(twists), axis=1) > _POOR_SEED)
     if poor.size:
         q[poor] = model.onto_path(q[poor], [targets[k] for k in poor], _ROUNDS).q
+    if not np.all(np.isfinite(q)):
+        raise np.linalg.LinAlgError("a posture of the curve is singular")
     q = _off_limits(model, q, targets)
     if len(s) and s[-1] == curve.s[-1]:
         q[-1] = curve.q[-1]

@@ -4,7 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from irlx.blocks import Block, CyclicBlock, MoveBlock, PoseTarget, ReconfigureBlock
+from irlx.blocks import (
+    Block,
+    CyclicBlock,
+    FreezeBlock,
+    JointTarget,
+    MoveBlock,
+    PoseTarget,
+    ReconfigureBlock,
+)
 from irlx.robot.promises import CLOSURE, PATH_ORIENTATION, PATH_POSITION
 from irlx.streams.verify.evidence import Evidence
 from irlx.streams.verify.moves import MoveRows
@@ -15,14 +23,17 @@ ACTIVE = 1e-9
 """A limit that is this near, relative to max(1, |value|), may have kept the posture from closing."""
 
 
-_LED_AWAY = "a limit was active, or a RECONFIGURATION led away from the posture"
+_LED_AWAY = (
+    "a limit was active, or a RECONFIGURATION, a frozen joint or joint values led away from the posture"
+)
 
 
 def check_closure(evidence: Evidence) -> Check:
     """Posture difference at every return to the pose of CYCLICSTART, by moves to a pose.
 
-    A return whose end was governed by a limit is reported, not judged; so is one after a RECONFIGURATION,
-    which may have led to another branch of postures.
+    A return whose end was governed by a limit is reported, not judged; so is one after what leads away
+    from the posture, which comes back no faster than the joints can: a RECONFIGURATION, which may even have
+    led to another branch of postures, frozen joints, a move to joint values.
     """
     tally = evidence.tally("cyclic closure", "rad|m")
     returns = _returns(evidence)
@@ -41,8 +52,8 @@ def check_closure(evidence: Evidence) -> Check:
 
 
 def _returns(evidence: Evidence) -> list[tuple[MoveRows, int, bool]]:
-    """Finished moves to a pose that end at the pose of CYCLICSTART, the row of that start, and whether the
-    posture was reconfigured since. Moves WITH RECONFIGURATION are none: the cyclic option is off for them."""
+    """Finished moves to a pose that end at the pose of CYCLICSTART, the row of that start, and whether
+    something led away since. Moves WITH RECONFIGURATION are none: the cyclic option is off for them."""
     moves = {move.block.id: move for move in evidence.moves}
     found: list[tuple[MoveRows, int, bool]] = []
     start: int | None = None
@@ -50,8 +61,8 @@ def _returns(evidence: Evidence) -> list[tuple[MoveRows, int, bool]]:
     for record in evidence.stream.records:
         if isinstance(record.block, CyclicBlock):
             start, led_away = record.tick if record.block.active else None, False
+        led_away = led_away or _leads_away(record.block)
         if _reconfigures(record.block):
-            led_away = True
             continue
         if start is None or not isinstance(record.block, MoveBlock):
             continue
@@ -60,6 +71,11 @@ def _returns(evidence: Evidence) -> list[tuple[MoveRows, int, bool]]:
         if to_pose and move.finished and move.last > move.start and _same_pose(evidence, move.last, start):
             found.append((move, start, led_away))
     return found
+
+
+def _leads_away(block: Block) -> bool:
+    to_joints = isinstance(block, MoveBlock) and isinstance(block.target, JointTarget)
+    return to_joints or _reconfigures(block) or (isinstance(block, FreezeBlock) and bool(block.joints))
 
 
 def _reconfigures(block: Block) -> bool:
