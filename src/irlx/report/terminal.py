@@ -102,8 +102,7 @@ def _active(events: Sequence[LimitActive]) -> list[str]:
         spans.setdefault(key, []).append(f"{event.first_time:.6g}-{event.last_time:.6g}")
     lines = []
     for (joint, side, kind), times in spans.items():
-        shown = ", ".join(times[:_MOST_SPANS]) + (
-            f" and {len(times) - _MOST_SPANS} more" if len(times) > _MOST_SPANS else ""
-        )
-        lines.append(f"{joint} {side} {kind}: {shown} s")
+        others = len(times) - _MOST_SPANS
+        more = f" and {others} more times" if others > 0 else ""
+        lines.append(f"{joint} {side} {kind}: {', '.join(times[:_MOST_SPANS])} s{more}")
     return lines
