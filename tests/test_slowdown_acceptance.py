@@ -24,7 +24,7 @@ pytestmark = [pytest.mark.req("MOT-20"), pytest.mark.req("MOT-21")]
 needs_panda = pytest.mark.skipif(robot_data_folder() is None, reason='pip install "irlx[robots]"')
 ticks = pytest.mark.parametrize("tick", [1.0, 4.0])
 slow_ticks = pytest.mark.parametrize("tick", [pytest.param(1.0, marks=pytest.mark.slow), 4.0])
-"""Ticks of the cases beyond the specification: 1 ms in the long run alone."""
+"""Ticks of the cases on other robots: 1 ms in the long run alone."""
 KINDS = ("position", "speed", "acceleration")
 
 
@@ -60,7 +60,7 @@ def reference(folder: Path, robot: str, tick: float, **bounds) -> tuple[irlx.Run
     return run, (len(written.t) - 3) * written.dt
 
 
-# ---- panda, the figures of the specification
+# ---- panda, durations that a prototype of the method reached
 
 
 @needs_panda

@@ -64,7 +64,7 @@ def speed_excess(of: Case, q: np.ndarray) -> float:
 
 
 def objective(of: Case, q: np.ndarray, smoothing: Smoothing) -> float:
-    """The sum of the specification, written down once more."""
+    """The sum of docs/reference/pacing.md, written down once more."""
     weights = machine(of.name).weights
     near = (of.grid.step / smoothing.tau) ** 4 * np.sum((q - of.passage.q) ** 2 @ weights)
     out = np.maximum(np.maximum(q - of.bounds[1], of.bounds[0] - q), 0.0)
