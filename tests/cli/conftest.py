@@ -47,10 +47,12 @@ def folder(tmp_path):
 
 @pytest.fixture
 def environment(tmp_path):
-    """Environment of a subprocess: an empty home, nothing of the caller's settings but the path."""
+    """Environment of a subprocess: an empty home, nothing of the caller's settings but the path, and what
+    chooses the kernels of the linear algebra, since their last bits differ."""
     home = tmp_path / "home"
     home.mkdir()
     return {
+        **{name: value for name, value in os.environ.items() if name.startswith("OPENBLAS_")},
         "PATH": os.environ.get("PATH", ""),
         "HOME": str(home),
         "PYTHONPATH": str(Path(irlx.__file__).parents[1]),

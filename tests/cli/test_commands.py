@@ -237,8 +237,10 @@ def test_interrupt(folder, environment, names):
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
+        # A shell starts its background jobs with interrupts ignored, and children inherit that.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # noqa: PLW1509
     )
-    # Long enough to load everything and to finish the first move; the second takes minutes.
+    # Long enough to load everything and to finish the first move; the second takes much longer.
     time.sleep(3.0)
     assert process.poll() is None
     process.send_signal(signal.SIGINT)

@@ -68,7 +68,6 @@ Array = NDArray[np.float64]
 FARTHEST_TARGET = 1e9
 """Coordinate (m) beyond which a target is out of reach of any robot, and of squares in float64."""
 
-
 _TURN_RULES = 1e3
 """A path that turns by more than this many rad per m is told in angles: its way is next to nothing."""
 
@@ -307,8 +306,7 @@ class Pacer:
             return None
         q = plan.postures(self._setup.dt)
         self._check_rows(q, in_force.limits, place)
-        poses = [self._setup.kinematics.tool_pose(row) for row in q]
-        rotation, position = (np.array(part) for part in zip(*poses, strict=True))
+        rotation, position = self._setup.kinematics.tool_poses(q)
         clock = programmed_clock(plan.law, plan.ticks, self._setup.dt)
         nothing = np.zeros(plan.ticks + 1)
         return MotionRows(

@@ -132,8 +132,7 @@ def _motion_rows(
     kinematics = model.kinematics
     held = np.vstack([rows, rows[-1:]])
     start_rotation, start_position = kinematics.tool_pose(q)
-    poses = [kinematics.tool_pose(row) for row in held]
-    rotation, position = (np.array(part) for part in zip(*poses, strict=True))
+    rotation, position = kinematics.tool_poses(held)
     return MotionRows(
         block,
         first_tick,
