@@ -18,7 +18,7 @@ from irlx.pacing.slowdown.model import Model
 from irlx.pacing.slowdown.planned import MotionTask, PlannedMotion, Refusal, Ticking, plan_motion
 from irlx.pacing.slowing import Slowing, slowings
 from irlx.pacing.touching import touching
-from irlx.pacing.walk import Walk, walk
+from irlx.pacing.walk import Halt, Walk, walk
 from irlx.transform.step_bounds import BoundSource, StepLimiter
 from irlx.transform.tick import TickSolver
 
@@ -43,8 +43,9 @@ class PacedPath:
 
 @dataclass(frozen=True)
 class Failure:
-    """Why a motion has no rows: the bound its ordinary walk would break, and why no slower clock helps."""
+    """Why a motion has no rows: what ended the ordinary walk, and why no slower clock helps."""
 
+    halt: Halt | None
     broken: BrokenBound | None
     refusal: Refusal
 
@@ -90,7 +91,7 @@ def pace_path(motion: PathMotion, model: Model, solver: TickSolver) -> PacedPath
         walked, broken = _walked(motion, model, solver, thorough=True)
     if walked.halt is None and broken is None:
         return _as_walked(walked)
-    return Failure(broken, found)
+    return Failure(walked.halt, broken, found)
 
 
 def _walked(
