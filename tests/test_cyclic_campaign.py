@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 
 import irlx
 from irlx.cell.robot_data import robot_data_folder
-from irlx.robot.promises import CLOSURE
+from irlx.promises import CLOSURE
 from machines import machine
 
 pytestmark = [pytest.mark.req("TRF-11"), pytest.mark.req("TRF-05")]

@@ -16,15 +16,13 @@ from irlx.report.run import Run
 from irlx.robot.description import RobotDescription
 from irlx.streams.formats import read_stream
 from irlx.streams.joint_stream import JointStream
-from irlx.streams.verify import VerifyReport, verify_stream
-from irlx.streams.verify.report import FAILED, OK, Check
+from irlx.verifier import Report, verify_stream
+from irlx.verifier.report import FAILED, OK, Check
 
 PathLike = str | os.PathLike[str]
 
 
-def verify(
-    stream: Run | PathLike, program: PathLike | None = None, cell: PathLike | None = None
-) -> VerifyReport:
+def verify(stream: Run | PathLike, program: PathLike | None = None, cell: PathLike | None = None) -> Report:
     """Check a run, or a stream file, independently of what made it.
 
     The robot is that of `cell`; without one it is looked up by what the stream says of itself: the
@@ -37,7 +35,7 @@ def verify(
     report = verify_stream(joint_stream, robot_for(joint_stream, beside, cell))
     if program is None:
         return report
-    return VerifyReport((*report.checks, _program_check(joint_stream, Path(program), cell)))
+    return Report((*report.checks, _program_check(joint_stream, Path(program), cell)))
 
 
 def robot_for(stream: JointStream, beside: Path, cell: PathLike | None = None) -> RobotDescription | None:

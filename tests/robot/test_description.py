@@ -11,9 +11,9 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from irlx.promises import rounding_allowance
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
-from irlx.robot.promises import rounding_allowance
 from irlx.robot.urdf import read_urdf
 
 TEXT = """<robot name="two"><link name="a"/><link name="b"/><link name="c"/><link name="d"/>

@@ -21,8 +21,8 @@ from irlx.pacing.slowdown.planned import MotionTask, Ticking
 from irlx.robot.description import RobotDescription
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
-from irlx.streams.verify.forward import forward
 from irlx.transform.criteria.least_motion import LeastMotion
+from irlx.verifier.forward import forward
 
 
 @dataclass(frozen=True)

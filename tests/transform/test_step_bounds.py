@@ -7,8 +7,8 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from irlx.promises import rounding_allowance
 from irlx.robot.limits import JointLimits
-from irlx.robot.promises import rounding_allowance
 from irlx.transform.precision import BOUND_RESERVE
 from irlx.transform.step_bounds import BoundSource, StepBounds, StepLimiter, braking_speed
 

@@ -27,8 +27,8 @@ def add_parser(commands: Any) -> None:
 
 def command(options: argparse.Namespace) -> int:
     """Print the table of checks on stdout; 1 where one fails."""
-    from irlx.streams.verify import render_table, to_plain
     from irlx.verification import verify
+    from irlx.verifier import render_table, to_plain
 
     report = verify(options.stream, options.program, options.cell)
     print(json.dumps(to_plain(report), indent=2) if options.json else render_table(report))

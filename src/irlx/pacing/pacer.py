@@ -56,9 +56,9 @@ from irlx.pacing.rows import MotionRows, PathPart
 from irlx.pacing.slowdown.model import Model
 from irlx.pacing.snap import SAME_VALUE, snapped
 from irlx.pacing.switches import check_freeze, check_inside, check_joint_target, check_limit
+from irlx.promises import PATH_ORIENTATION, PATH_POSITION
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
-from irlx.robot.promises import PATH_ORIENTATION, PATH_POSITION
 from irlx.transform.posture_search import nearest_posture
 from irlx.transform.qp.proxqp import ProxQpSolver
 from irlx.transform.tick import TickSolver

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.blocks import LimitKind
+from irlx.promises import LIMIT_EXCESS, rounding_allowance
 from irlx.robot.limits import JointLimits
-from irlx.robot.promises import LIMIT_EXCESS, rounding_allowance
 
 Array = NDArray[np.float64]
 

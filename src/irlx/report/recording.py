@@ -13,11 +13,11 @@ from scipy.spatial.transform import Rotation
 from irlx.blocks import Block, MoveBlock, ReconfigureBlock
 from irlx.diagnostics import Diagnostic
 from irlx.pacing.rows import MotionRows
+from irlx.promises import PATH_POSITION
 from irlx.report.events import Slowed, limit_events, slowed_events
 from irlx.report.run import Run
 from irlx.report.summary import LimitUse, Summary, closure, limit_uses
 from irlx.robot.limits import JointLimits
-from irlx.robot.promises import PATH_POSITION
 from irlx.streams.joint_stream import BlockRecord, JointStream, StreamHeader
 from irlx.streams.sample import Sample
 

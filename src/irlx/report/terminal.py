@@ -7,7 +7,7 @@ from math import degrees
 
 from irlx.report.events import LimitActive, Slowed
 from irlx.report.summary import LimitUse, Summary
-from irlx.streams.verify import VerifyReport
+from irlx.verifier import Report
 
 _LABEL = 12
 _MOST_SPANS = 4
@@ -43,7 +43,7 @@ def summary_text(summary: Summary, joint_units: Sequence[str], joint_names: Sequ
     return "\n".join(lines)
 
 
-def verification_line(name: str, report: VerifyReport) -> str:
+def verification_line(name: str, report: Report) -> str:
     """One line on a verified file."""
     if not report.passed:
         first = report.failed[0]

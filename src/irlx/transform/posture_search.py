@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from irlx.promises import PATH_ORIENTATION, PATH_POSITION
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
-from irlx.robot.promises import PATH_ORIENTATION, PATH_POSITION
 from irlx.transform.criteria.posture import Posture
 from irlx.transform.nearest import Nearest, nearest_in_bounds
 from irlx.transform.qp.solver import QpSolver

@@ -1,4 +1,4 @@
-"""Named tolerances of the inverse transform; the promises they serve are in `irlx.robot.promises`."""
+"""Named tolerances of the inverse transform; the promises they serve are in `irlx.promises`."""
 
 POSITION_TOLERANCE = 1e-7
 """Pose error before the last Newton step of a tick, m; that step squares it."""

@@ -5,12 +5,12 @@ from __future__ import annotations
 from math import isfinite
 from typing import Any
 
-from irlx.streams.verify.report import Check, Finding, VerifyReport
+from irlx.verifier.report import Check, Finding, Report
 
 _COLUMNS = ("check", "status", "worst", "allowed", "where")
 
 
-def render_table(report: VerifyReport) -> str:
+def render_table(report: Report) -> str:
     """Table of all checks, one line each with the worst value and its place, then the findings in words."""
     rows = [_COLUMNS, *(_row(check) for check in report.checks)]
     widths = [max(len(row[column]) for row in rows) for column in range(len(_COLUMNS))]
@@ -40,7 +40,7 @@ def _row(check: Check) -> tuple[str, ...]:
     return check.name, check.status, f"{worst.value:.6g}{unit}", f"{worst.allowed:.6g}", ", ".join(place)
 
 
-def to_plain(report: VerifyReport) -> dict[str, Any]:
+def to_plain(report: Report) -> dict[str, Any]:
     """Dictionary of a report that JSON can hold; numbers that are not finite become strings."""
     return {"passed": report.passed, "checks": [_check_to_plain(check) for check in report.checks]}
 

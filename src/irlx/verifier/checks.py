@@ -6,12 +6,12 @@ from collections.abc import Callable
 
 from irlx.robot.description import RobotDescription
 from irlx.streams.joint_stream import JointStream
-from irlx.streams.verify.closure import check_closure
-from irlx.streams.verify.evidence import Evidence
-from irlx.streams.verify.geometry import check_goals, check_joint_moves, check_paths, check_tool
-from irlx.streams.verify.limits import check_limits
-from irlx.streams.verify.report import FAILED, NOT_CHECKED, OK, Check, VerifyReport
-from irlx.streams.verify.structure import (
+from irlx.verifier.closure import check_closure
+from irlx.verifier.evidence import Evidence
+from irlx.verifier.geometry import check_goals, check_joint_moves, check_paths, check_tool
+from irlx.verifier.limits import check_limits
+from irlx.verifier.report import FAILED, NOT_CHECKED, OK, Check, Report
+from irlx.verifier.structure import (
     check_blocks,
     check_complete,
     check_finite,
@@ -38,7 +38,7 @@ CHECKS = ("complete", "ticks", "finite values", "blocks", "robot", *_SAMPLES, *_
 """Names of all checks in the order of a report; every report has all of them."""
 
 
-def verify_stream(stream: JointStream, robot: RobotDescription | None) -> VerifyReport:
+def verify_stream(stream: JointStream, robot: RobotDescription | None) -> Report:
     """Check a stream against itself, its blocks, and the robot it is meant for.
 
     Nothing is taken from whatever made the stream: speeds and accelerations are backward differences
@@ -50,7 +50,7 @@ def verify_stream(stream: JointStream, robot: RobotDescription | None) -> Verify
     if any(check.status == FAILED for check in found[1:]):
         broken = next(check.name for check in found[1:] if check.status == FAILED)
         rest = [_not_checked(name, f"the check '{broken}' failed") for name in CHECKS[3:]]
-        return VerifyReport((*found, *rest))
+        return Report((*found, *rest))
     of_robot = check_robot(stream, robot)
     evidence = Evidence(stream, robot if of_robot.status == OK else None)
     of_blocks = check_blocks(evidence)
@@ -64,7 +64,7 @@ def verify_stream(stream: JointStream, robot: RobotDescription | None) -> Verify
         lambda: [*check_goals(evidence), *check_paths(evidence), check_closure(evidence)],
         no_robot or no_blocks,
     )
-    return VerifyReport(tuple(found))
+    return Report(tuple(found))
 
 
 def _sample_checks(evidence: Evidence, of_blocks: Check) -> list[Check]:

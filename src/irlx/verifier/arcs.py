@@ -8,7 +8,7 @@ import numpy as np
 
 from irlx.blocks import ArcCourse
 from irlx.streams.joint_stream import Floats
-from irlx.streams.verify.paths import PathDeviation, line_deviation, turn_deviation
+from irlx.verifier.paths import PathDeviation, line_deviation, turn_deviation
 
 LEAST_HEIGHT = 1e-7
 """Three points that are nearer to a line than this, m, make no circle: a tenth of what a move needs."""

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.blocks import JointRange, LimitKind, LimitSwitchBlock
+from irlx.promises import LIMIT_EXCESS, rounding_allowance
 from irlx.robot.limits import JointLimits
-from irlx.robot.promises import LIMIT_EXCESS, rounding_allowance
 from irlx.streams.joint_stream import Floats, Integers, JointStream
-from irlx.streams.verify.moves import MoveRows
-from irlx.streams.verify.tally import Tally
+from irlx.verifier.moves import MoveRows
+from irlx.verifier.tally import Tally
 
 KINDS = {"position": LimitKind.POSITION, "speed": LimitKind.SPEED, "acceleration": LimitKind.ACCELERATION}
 

@@ -6,8 +6,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from irlx.robot.urdf import read_urdf
-from irlx.streams.verify.forward import forward
-from irlx.streams.verify.rotations import (
+from irlx.verifier.forward import forward
+from irlx.verifier.rotations import (
     about_axis,
     angle_between,
     from_quaternion,

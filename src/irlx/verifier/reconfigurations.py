@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from irlx.blocks import ReconfigureBlock
-from irlx.robot.promises import PATH_ORIENTATION, PATH_POSITION
+from irlx.promises import PATH_ORIENTATION, PATH_POSITION
 from irlx.streams.joint_stream import JointStream
-from irlx.streams.verify.evidence import Evidence
-from irlx.streams.verify.moves import segments
-from irlx.streams.verify.rotations import angle_between
-from irlx.streams.verify.tally import Tally
+from irlx.verifier.evidence import Evidence
+from irlx.verifier.moves import segments
+from irlx.verifier.rotations import angle_between
+from irlx.verifier.tally import Tally
 
 
 def reconfigurations_of(stream: JointStream) -> list[tuple[int, int]]:

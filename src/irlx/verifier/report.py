@@ -56,7 +56,7 @@ class Check:
 
 
 @dataclass(frozen=True)
-class VerifyReport:
+class Report:
     """All checks of one stream, in a fixed order."""
 
     checks: tuple[Check, ...]

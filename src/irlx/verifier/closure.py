@@ -13,11 +13,11 @@ from irlx.blocks import (
     PoseTarget,
     ReconfigureBlock,
 )
-from irlx.robot.promises import CLOSURE, PATH_ORIENTATION, PATH_POSITION
-from irlx.streams.verify.evidence import Evidence
-from irlx.streams.verify.moves import MoveRows
-from irlx.streams.verify.report import Check
-from irlx.streams.verify.rotations import angle_between
+from irlx.promises import CLOSURE, PATH_ORIENTATION, PATH_POSITION
+from irlx.verifier.evidence import Evidence
+from irlx.verifier.moves import MoveRows
+from irlx.verifier.report import Check
+from irlx.verifier.rotations import angle_between
 
 ACTIVE = 1e-9
 """A limit that is this near, relative to max(1, |value|), may have kept the posture from closing."""

@@ -7,7 +7,7 @@ import pytest
 
 from irlx.blocks import CyclicBlock, FreezeBlock, JointTarget, MotionLaw, ReconfigureBlock
 from irlx.streams import read_stream, write_stream
-from irlx.streams.verify import render_table, verify_stream
+from irlx.verifier import render_table, verify_stream
 
 LAW = MotionLaw(0.5, 2.0, 1.0, 4.0)
 START = np.array([0.0, 0.5, 0.25, 0.4, 0.3, 0.2, -0.1])

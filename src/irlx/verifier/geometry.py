@@ -5,16 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from irlx.blocks import JointTarget, MoveKind
-from irlx.robot.promises import PATH_ORIENTATION, PATH_POSITION
+from irlx.promises import PATH_ORIENTATION, PATH_POSITION
 from irlx.streams.joint_stream import Floats
-from irlx.streams.verify.arcs import arc_deviation
-from irlx.streams.verify.evidence import Evidence
-from irlx.streams.verify.moves import MoveRows
-from irlx.streams.verify.paths import PathDeviation, joint_line_deviation, line_deviation
-from irlx.streams.verify.reconfigurations import add_reconfigurations
-from irlx.streams.verify.report import Check
-from irlx.streams.verify.rotations import angle_between, from_quaternion
-from irlx.streams.verify.tally import Tally
+from irlx.verifier.arcs import arc_deviation
+from irlx.verifier.evidence import Evidence
+from irlx.verifier.moves import MoveRows
+from irlx.verifier.paths import PathDeviation, joint_line_deviation, line_deviation
+from irlx.verifier.reconfigurations import add_reconfigurations
+from irlx.verifier.report import Check
+from irlx.verifier.rotations import angle_between, from_quaternion
+from irlx.verifier.tally import Tally
 
 JOINT_STRAIGHTNESS = 1e-9
 """Largest deviation of a joint from the straight line of a PTP move, and from its joint target, rad or m."""

@@ -8,8 +8,8 @@ from scipy.spatial.transform import Rotation
 
 from irlx.blocks import ArcCourse, PoseTarget
 from irlx.streams import BlockRecord, read_stream, write_stream
-from irlx.streams.verify import render_table, verify_stream
-from irlx.streams.verify.arcs import arc_deviation, arc_shape
+from irlx.verifier import render_table, verify_stream
+from irlx.verifier.arcs import arc_deviation, arc_shape
 
 pytestmark = [pytest.mark.req("MOT-20"), pytest.mark.req("STR-06")]
 

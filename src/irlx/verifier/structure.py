@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 from irlx.blocks import FreezeBlock
 from irlx.robot.description import RobotDescription
 from irlx.streams.joint_stream import Floats, JointStream
-from irlx.streams.verify.evidence import Evidence
-from irlx.streams.verify.limits import add_positions
-from irlx.streams.verify.moves import misfit, segments
-from irlx.streams.verify.report import FAILED, NOT_CHECKED, OK, Check, Finding
+from irlx.verifier.evidence import Evidence
+from irlx.verifier.limits import add_positions
+from irlx.verifier.moves import misfit, segments
+from irlx.verifier.report import FAILED, NOT_CHECKED, OK, Check, Finding
 
 
 def check_complete(stream: JointStream) -> Check:

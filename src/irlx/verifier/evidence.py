@@ -10,12 +10,12 @@ import numpy as np
 from irlx.blocks import JointTarget, MoveBlock, PoseTarget, ReconfigureBlock
 from irlx.robot.description import RobotDescription
 from irlx.streams.joint_stream import Floats, JointStream
-from irlx.streams.verify.arcs import ArcShape, arc_shape
-from irlx.streams.verify.forward import forward
-from irlx.streams.verify.limits import LimitsInForce, limits_in_force
-from irlx.streams.verify.moves import MoveRows, moves_of
-from irlx.streams.verify.rotations import from_quaternion
-from irlx.streams.verify.tally import Tally
+from irlx.verifier.arcs import ArcShape, arc_shape
+from irlx.verifier.forward import forward
+from irlx.verifier.limits import LimitsInForce, limits_in_force
+from irlx.verifier.moves import MoveRows, moves_of
+from irlx.verifier.rotations import from_quaternion
+from irlx.verifier.tally import Tally
 
 Pose = tuple[Floats, Floats]
 """Position (3,) m and rotation (3, 3) of the tool."""

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from irlx.streams import JointStream, read_stream, write_stream
-from irlx.streams.verify import CHECKS, VerifyReport, render_table, to_plain, verify_stream
+from irlx.verifier import CHECKS, Report, render_table, to_plain, verify_stream
 
 Change = Callable[[JointStream], JointStream]
 
@@ -128,7 +128,7 @@ SABOTAGE: list[tuple[str, Change, str, dict[str, object]]] = [
 ]
 
 
-def assert_caught(report: VerifyReport, name: str, place: dict[str, object]) -> None:
+def assert_caught(report: Report, name: str, place: dict[str, object]) -> None:
     assert not report.passed
     check = report[name]
     assert check.status == "failed", render_table(report)
@@ -262,7 +262,7 @@ def test_start_outside(good: JointStream, robot) -> None:
 
 
 def test_an_active_limit_excuses_from_closing(gantry_kit, robot) -> None:
-    def run(bound: float) -> VerifyReport:
+    def run(bound: float) -> Report:
         maker = gantry_kit.Maker(np.array([0.0, 0.5, 0.25, 0.4, 0.3, 0.2, -0.1]))
         maker.record(gantry_kit.CyclicBlock, active=True)
         maker.lin((0.7, 0.25, 0.4), rail=0.1)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from irlx.streams.joint_stream import Floats, Integers, JointStream
-from irlx.streams.verify.report import FAILED, NOT_CHECKED, OK, Check, Finding
+from irlx.verifier.report import FAILED, NOT_CHECKED, OK, Check, Finding
 
 
 class Tally:
