@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from irlx.streams.error import StreamError
     from irlx.streams.sample import Sample
     from irlx.verification import verify
+    from irlx.verifier.report import Report
 
 _HOMES = {
     "CellError": "irlx.cell.errors",
@@ -29,6 +30,7 @@ _HOMES = {
     "IrlxError": "irlx.diagnostics",
     "Program": "irlx.program",
     "ProgramError": "irlx.program",
+    "Report": "irlx.verifier.report",
     "Run": "irlx.report.run",
     "RunError": "irlx.report.run",
     "RunInterrupted": "irlx.report.run",
@@ -48,6 +50,7 @@ __all__ = [
     "IrlxError",
     "Program",
     "ProgramError",
+    "Report",
     "Run",
     "RunError",
     "RunInterrupted",

@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from math import inf
 from pathlib import Path
-from unicodedata import normalize
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,9 +16,9 @@ from irlx.blocks import Block, Origin, Question
 from irlx.cell.cell import Cell
 from irlx.cell.find import is_file
 from irlx.cell.load import load_cell
+from irlx.cell.setting import setting_of
 from irlx.diagnostics import Diagnostic, IrlxError, Place, Span, report
 from irlx.interpreter.interpret import interpret
-from irlx.interpreter.setting import Setting
 from irlx.pacing.explanation import TickExplanation
 from irlx.pacing.explanation import explain_tick as explain_row
 from irlx.pacing.pacer import Pacer, PacingSetup
@@ -88,24 +87,6 @@ def _loaded(path: PathLike, cell: PathLike | None) -> Program:
         if any(found.code == "IRL201" for found in error.diagnostics) and is_file(likely):
             load_cell(likely)
         raise
-
-
-def setting_of(cell: Cell) -> Setting:
-    """What the interpreter may know of a cell."""
-    motion = cell.motion
-    defaults = {
-        "R_SPEED": motion.speed,
-        "R_ACC": motion.acc,
-        "R_SPEED_ORI": motion.speed_ori,
-        "R_ACC_ORI": motion.acc_ori,
-        "R_SPEED_PTP": motion.speed_ptp,
-        "R_ACC_PTP": motion.acc_ptp,
-    }
-    poses = {
-        normalize("NFC", name): (frame.position, frame.quaternion) for name, frame in cell.frames.items()
-    }
-    axes = cell.robot.axes
-    return Setting(cell.robot.joint_names, tuple(axis.is_prismatic for axis in axes), defaults, poses)
 
 
 @dataclass(frozen=True)

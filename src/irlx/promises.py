@@ -1,21 +1,35 @@
-"""The numbers irlx promises, each in one place: producers aim below them, the verifier holds to them."""
+"""The numbers irlx promises, and every tolerance by which a stream is judged, each with its promise.
+
+Producers aim below these numbers, tests and the verifier hold to them; the table of promises in the
+README and docs/reference/verifier.md cite them.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
+# ---- The tool is on the programmed path, and at its goal
+
 PATH_POSITION = 1e-6
-"""Largest distance of the tool from the programmed pose of a tick, m."""
+"""Largest distance of the tool from the programmed path, from the goal at the end of a move, and from where
+it stands during a RECONFIGURATION, m."""
 
 PATH_ORIENTATION = 1e-6
-"""Largest angle between the tool's orientation and the programmed one of a tick, rad."""
+"""Largest angle between the tool's orientation and the programmed one, in the same places, rad."""
+
+PATH_STEP = 1e-9
+"""What rounding of a tool pose may pretend, m or rad. Never backwards, never faster than programmed: a step
+along the path may be shorter than 0 by this, speeds of the tool exceed by 2 PATH_STEP/dt, accelerations by
+4 PATH_STEP/dt^2, beside `PROGRAM_EXCESS`."""
+
+PROGRAM_EXCESS = 1e-9
+"""Largest relative excess of a programmed speed or acceleration, of the tool or a PTP's joints."""
+
+# ---- A limit is a promise
 
 LIMIT_EXCESS = 1e-9
-"""Largest relative excess of a speed or acceleration bound, beside `rounding_allowance`."""
-
-CLOSURE = 1e-6
-"""Largest difference per joint between the postures at the ends of a closed cyclic path, rad or m."""
+"""Largest relative excess of a speed or acceleration bound, beside `rounding_allowance`; position: none."""
 
 
 def rounding_allowance(q: NDArray[np.float64], dt: float) -> tuple[float, float]:
@@ -27,3 +41,36 @@ def rounding_allowance(q: NDArray[np.float64], dt: float) -> tuple[float, float]
     largest = float(np.max(np.abs(q))) if q.size else 0.0
     unit = float(np.spacing(largest))
     return 2.0 * unit / dt, 4.0 * unit / dt**2
+
+
+# ---- A closed path under CYCLICSTART ends in the posture it began with
+
+CLOSURE = 1e-6
+"""Largest difference per joint between the postures at the ends of a closed cyclic path, rad or m."""
+
+TOUCH = 1e-9
+"""A bound this near, relative to max(1, |value|), is active: it may have kept a posture from closing."""
+
+# ---- Joint moves are straight and end where they are told
+
+JOINT_LINE = 1e-9
+"""Largest deviation of a joint from the straight line of a PTP move, and from its joint target, rad or m;
+also the longest step back along it."""
+
+# ---- A stream says of itself what is so
+
+TOOL_POSITION = 1e-9
+"""Largest distance between the recorded tool position and the one that the joint values give, m."""
+
+TOOL_ORIENTATION = 1e-9
+"""Largest angle between the recorded tool orientation and the one that the joint values give, rad."""
+
+UNIT_LENGTH = 1e-6
+"""Largest difference from 1 of the length of a recorded quaternion."""
+
+SAME_NUMBER = 1e-12
+"""Numbers of recorded blocks and of those that the program gives differ at most by this, relative to
+max(1, |value|): what another machine's sine may do."""
+
+# ---- Exactly, without a tolerance: position limits, frozen joints (bit for bit), hold ticks (bit for bit),
+# ticks, block ids, checksums, names, fingerprints.

@@ -1,71 +1,153 @@
-"""Verification of a stream against the robot of its cell: what `irlx.verify` and `irlx verify` do."""
+"""Verification of a stream against its cell and program: what `irlx.verify` and `irlx verify` do."""
 
 from __future__ import annotations
 
-import hashlib
 import os
 from collections.abc import Iterator
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from irlx.blocks import Block, Question
+from irlx.cell.cell import Cell
 from irlx.cell.load import load_cell
 from irlx.cell.named import robot_names
 from irlx.cell.schema import RobotSection
+from irlx.cell.setting import setting_of
 from irlx.diagnostics import IrlxError
-from irlx.report.run import Run
+from irlx.interpreter.interpret import interpret
+from irlx.program import Program, cell_path, load
 from irlx.robot.description import RobotDescription
-from irlx.streams.formats import read_stream
-from irlx.streams.joint_stream import JointStream
-from irlx.verifier import Report, verify_stream
+from irlx.streams.error import StreamError
+from irlx.streams.formats import scan_stream
+from irlx.streams.joint_stream import StreamHeader
+from irlx.verifier import Reference, Report, verify_scans
+from irlx.verifier.moves import carries_blocks
+from irlx.verifier.outline import Outline, Scans
+from irlx.verifier.program_blocks import blocks_differ
 from irlx.verifier.report import FAILED, OK, Check
+
+if TYPE_CHECKING:
+    # Not imported: a run brings along all that made it, of which nothing is wanted here.
+    from irlx.report.run import Run
 
 PathLike = str | os.PathLike[str]
 
 
-def verify(stream: Run | PathLike, program: PathLike | None = None, cell: PathLike | None = None) -> Report:
+def verify(
+    run_or_file: Run | PathLike, program: PathLike | None = None, cell: PathLike | None = None
+) -> Report:
     """Check a run, or a stream file, independently of what made it.
 
-    The robot is that of `cell`; without one it is looked up by what the stream says of itself: the
-    cell file of that name beside the stream or in the working folder, then the robot of that name. With
-    `program` the stream must come from that very text. Raises StreamError for a file that is no
-    stream, CellError for a cell that cannot be used, ProgramError for a program that cannot.
+    The robot is that of `cell`; without one it is looked up: the cell of `program`, the cell file of the
+    recorded name beside the stream or in the working folder, then the robot of the recorded name. With
+    `program` the stream must come from that very text, and its blocks must be those that the text gives.
+    A damaged file fails the check 'file'. Raises StreamError where there is no file to
+    read, CellError for a `cell` that cannot be used, ProgramError for a program that cannot.
     """
-    joint_stream = stream.stream if isinstance(stream, Run) else read_stream(stream)
-    beside = Path.cwd() if isinstance(stream, Run) else Path(stream).parent
-    report = verify_stream(joint_stream, robot_for(joint_stream, beside, cell))
-    if program is None:
-        return report
-    return Report((*report.checks, _program_check(joint_stream, Path(program), cell)))
+    given_cell = None if cell is None else load_cell(Path(cell))
+    text = None if program is None else load(program, cell)
+    if isinstance(run_or_file, str | os.PathLike):
+        scans: Scans = partial(scan_stream, run_or_file)
+        name, beside, is_file = Path(run_or_file).name, Path(run_or_file).parent, True
+    else:
+        stream = run_or_file.stream
+        scans, name, beside, is_file = stream.scan, stream.header.program_name, Path.cwd(), False
+    header = _header(scans)
+    of_program = None if text is None else given_cell or _cell_of(text)
+    reference = None
+    if given_cell is not None:
+        reference = Reference(given_cell.robot, given_cell.limits)
+    elif header is not None:
+        reference = _looked_up(header, beside, of_program)
+    compare = None if text is None else partial(_program_check, text, of_program)
+    return verify_scans(scans, reference, name, compare, is_file)
 
 
-def robot_for(stream: JointStream, beside: Path, cell: PathLike | None = None) -> RobotDescription | None:
-    """Robot that a stream is meant for, None where neither its cell nor its model is found."""
-    if cell is not None:
-        return load_cell(Path(cell)).robot
-    header = stream.header
-    candidates = [folder / header.cell_name for folder in (beside, Path.cwd()) if header.cell_name]
-    for robot in _guesses(candidates, header.robot_model, header.tip, beside):
-        # A file of that name may be anybody's: only the very robot that the stream names will do.
-        if robot.fingerprint == header.robot_fingerprint and robot.joint_names == header.joint_names:
-            return robot
+def _header(scans: Scans) -> StreamHeader | None:
+    """Header of a stream, None where it cannot be read; verification says why."""
+    with suppress(StreamError):
+        for item in scans():
+            return item if isinstance(item, StreamHeader) else None
     return None
 
 
-def _guesses(candidates: list[Path], model: str, tip: str, beside: Path) -> Iterator[RobotDescription]:
-    for path in candidates:
-        with suppress(IrlxError):
-            yield load_cell(path).robot
-    if model in robot_names():
+def _cell_of(program: Program) -> Cell | None:
+    try:
+        return load_cell(cell_path(program, None))
+    except IrlxError:
+        return None
+
+
+def _looked_up(header: StreamHeader, beside: Path, of_program: Cell | None) -> Reference | None:
+    """What a stream is judged by where no cell is given, None where neither its cell nor its model is found.
+
+    A cell of the right name may be anybody's: only one with the very robot of the stream will do, and its
+    limits only count where they are the stream's.
+    """
+    for cell in _cells(header, beside, of_program):
+        if _is_of(header, cell.robot):
+            limits = cell.limits if _same_limits(header, cell) else None
+            return Reference(cell.robot, limits)
+    if header.robot_model in robot_names():
         from irlx.cell.model import load_robot
 
         # Not suppressed: that a robot's package is missing is worth more than "not made".
-        yield load_robot(RobotSection(model=model, tip=tip), model, beside)
+        robot = load_robot(RobotSection(model=header.robot_model, tip=header.tip), header.robot_model, beside)
+        return Reference(robot) if _is_of(header, robot) else None
+    return None
 
 
-def _program_check(stream: JointStream, path: Path, cell: PathLike | None) -> Check:
-    from irlx.program import load
+def _cells(header: StreamHeader, beside: Path, of_program: Cell | None) -> Iterator[Cell]:
+    if of_program is not None:
+        yield of_program
+    for folder in (beside, Path.cwd()) if header.cell_name else ():
+        with suppress(IrlxError):
+            yield load_cell(folder / header.cell_name)
 
-    digest = hashlib.sha256(load(path, cell).path.read_bytes()).hexdigest()
-    same = digest == stream.header.program_sha256
-    detail = "" if same else f"the stream was made from {stream.header.program_name} with another text"
-    return Check("program", OK if same else FAILED, detail=detail)
+
+def _is_of(header: StreamHeader, robot: RobotDescription) -> bool:
+    return robot.fingerprint == header.robot_fingerprint and robot.joint_names == header.joint_names
+
+
+def _same_limits(header: StreamHeader, cell: Cell) -> bool:
+    kinds = ("position", "speed", "acceleration")
+    pairs = ((header.limits.pair(kind), cell.limits.pair(kind)) for kind in kinds)
+    return all((a == b).all() for own, other in pairs for a, b in zip(own, other, strict=True))
+
+
+def _program_check(program: Program, cell: Cell | None, outline: Outline) -> Check:
+    """The stream comes from this very text, and its blocks are those that the text gives in this cell."""
+    header = outline.header
+    findings, unsaid = [], ""
+    if program.sha256 != header.program_sha256:
+        findings.append(f"the stream was made from {header.program_name} with another text")
+    if not carries_blocks(outline):
+        unsaid = "its text only: the stream carries no blocks"
+    elif cell is None:
+        unsaid = "its text only: no cell to run it in is found"
+    else:
+        words = blocks_differ(outline, _replayed(program, cell, outline))
+        findings += [words] if words else []
+    return Check("program", FAILED if findings else OK, detail="; ".join(findings) or unsaid)
+
+
+def _replayed(program: Program, cell: Cell, outline: Outline) -> Iterator[Block]:
+    """Blocks of a program whose questions are answered by the stream: nothing moves."""
+    source = interpret(program.tree, program.source, setting_of(cell))
+    reply: tuple[float, ...] | None = None
+    done = 0
+    while True:
+        try:
+            item = source.send(reply)
+        except StopIteration:
+            return
+        reply = None
+        if isinstance(item, Question):
+            records = outline.records
+            row = records[done].tick if done < len(records) else outline.rows - 1
+            reply = outline.posture(row)
+        else:
+            done += 1
+            yield item

@@ -283,7 +283,9 @@ def test_a_panda_stream_is_verified_without_its_cell(tmp_path, monkeypatch, caps
     (tmp_path / "p.toml").unlink()
     capsys.readouterr()
     assert main(["verify", "p.irdata", "--json"]) == 0
-    assert "not made" not in json.dumps(json.loads(capsys.readouterr().out))
+    checks = json.loads(capsys.readouterr().out)["checks"]
+    unmade = {check["name"] for check in checks if check["status"] == "not checked"}
+    assert unmade == {"program", "robot limits"}
     monkeypatch.setattr(external, "robot_data_folder", lambda: None)
     assert main(["verify", "p.irdata"]) == 2
     assert "IRL614" in capsys.readouterr().err

@@ -177,7 +177,7 @@ ENDPROGRAM
     assert "marked incomplete: out.partial.irdata" in done.stderr
     verified = inside("verify", "out.partial.irdata", "--cell", "p.toml")
     assert verified.returncode == 1
-    failed = [line.split()[0] for line in verified.stdout.splitlines() if " failed" in line]
+    failed = [line.split()[0] for line in verified.stdout.splitlines() if "  FAILED" in line]
     assert failed == ["complete"]
 
 

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -255,3 +256,31 @@ def test_interrupt(folder, environment, names):
         stream = read_stream(folder / "out.partial.irdata")
         assert not stream.complete
         assert not stream.qd[-1].any()
+
+
+@pytest.mark.req("STR-06")
+def test_a_run_whose_file_fails_says_so(inside, folder, monkeypatch):
+    """A writer that loses a bit of a joint: the file is read back, judged and refused."""
+    from irlx.report.run import Run
+    from irlx.streams import write_stream
+
+    def save(run, path):
+        q = run.stream.q.copy()
+        q[3, 1] += 2e-6
+        write_stream(replace(run.stream, q=q), path)
+
+    monkeypatch.setattr(Run, "save", save)
+    done = inside("run", "p.irl", "-o", "a.irdata")
+    assert done.returncode == 1
+    assert "a.irdata: error IRL709: the stream fails the check 'tool position': first" in done.stderr
+    assert "at tick 3, block 1, line 4" in done.stderr
+    last = done.stdout.splitlines()[-1]
+    assert last.startswith("VERIFY      a.irdata: FAILED:")
+    done = inside("run", "p.irl", "-o", "a.irdata", "--json")
+    found = json.loads(done.stdout)
+    assert found["verified"] == {"a.irdata": False}
+    assert "IRL709" in {entry["code"] for entry in found["diagnostics"]}
+    done = inside("run", "p.irl", "-o", "a.irdata", "--no-verify")
+    assert done.returncode == 0
+    assert "verif" not in done.stdout.lower()
+    assert inside("verify", "a.irdata").returncode == 1

@@ -28,7 +28,7 @@ from irlx.robot.description import Joint, JointKind, RobotDescription
 from irlx.robot.limits import JointLimits
 from irlx.streams import FORMAT_VERSION, BlockRecord, JointStream, StreamHeader
 
-LAW = MotionLaw(speed=1.0, acc=2.0, speed_ori=1.5, acc_ori=3.0)
+LAW = MotionLaw(speed=30.0, acc=300.0, speed_ori=30.0, acc_ori=500.0)
 DT = 0.004
 
 

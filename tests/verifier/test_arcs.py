@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from irlx.blocks import ArcCourse, PoseTarget
 from irlx.streams import BlockRecord, read_stream, write_stream
 from irlx.verifier import render_table, verify_stream
-from irlx.verifier.arcs import arc_deviation, arc_shape
+from irlx.verifier.arcs import ArcWay, arc_shape
 
 pytestmark = [pytest.mark.req("MOT-20"), pytest.mark.req("STR-06")]
 
@@ -194,7 +194,8 @@ def deviation(points, angle, shares, turns, through=False, step=0.1):
     course = ArcCourse(PoseTarget(tuple(via), None), angle, through)
     whole = Rotation.from_matrix(rotations[0].T @ rotations[2]).as_rotvec()
     turned = Rotation.from_matrix(rotations[0]) * Rotation.from_rotvec(np.outer(shares, whole))
-    return shape, arc_deviation(shape, course, rotations, (at(shares * travel), turned.as_matrix()), step)
+    way = ArcWay(shape, course, rotations, step)
+    return shape, way.deviation(at(shares * travel), turned.as_matrix())
 
 
 @pytest.mark.parametrize("angle", [None, 1.0, 2 * np.pi, 20.0, -2.0, -2 * np.pi])

@@ -1,10 +1,15 @@
 """The verifier's kinematics and rotations against Pinocchio and SciPy."""
 
+from pathlib import Path
+
 import numpy as np
 import pinocchio as pin
 import pytest
 from scipy.spatial.transform import Rotation
 
+from irlx.cell.load import load_cell
+from irlx.cell.named import named_urdf, robot_names
+from irlx.diagnostics import Place
 from irlx.robot.urdf import read_urdf
 from irlx.verifier.forward import forward
 from irlx.verifier.rotations import (
@@ -54,6 +59,32 @@ def test_random_chains_against_pinocchio(seed: int) -> None:
             configuration[joint.idx_q : joint.idx_q + joint.nq] = wide
         pin.forwardKinematics(model, data, configuration)
         pose = pin.updateFramePlacement(model, data, frame)
+        assert np.abs(pose.translation - positions[row]).max() < 1e-13
+        assert np.abs(pose.rotation - rotations[row]).max() < 1e-13
+
+
+@pytest.mark.req("STR-06")
+@pytest.mark.parametrize("name", robot_names())
+def test_every_named_robot_against_pinocchio(name: str, tmp_path: Path) -> None:
+    """Its URDF read by Pinocchio itself, other moving joints at zero or at their locked values."""
+    (tmp_path / "cell.toml").write_text(f'[robot]\nmodel = "{name}"\n', encoding="utf-8")
+    robot = load_cell(tmp_path / "cell.toml").robot
+    model = pin.buildModelFromXML(named_urdf(name, Place(name)))
+    data, frame = model.createData(), model.getFrameId(robot.tip)
+    rng = np.random.default_rng(4)
+    q = rng.uniform(-2.0, 2.0, (8, len(robot.axes)))
+    positions, rotations = forward(robot, q)
+    root = model.getFrameId(robot.root)
+    for row, values in enumerate(q):
+        configuration = pin.neutral(model)
+        held = {name: value for name, value in robot.locked.items() if model.existJointName(name)}
+        for joint_name, value in {**held, **dict(zip(robot.joint_names, values, strict=True))}.items():
+            joint = model.joints[model.getJointId(joint_name)]
+            wide = [np.cos(value), np.sin(value)] if joint.nq == 2 else [value]
+            configuration[joint.idx_q : joint.idx_q + joint.nq] = wide
+        pin.forwardKinematics(model, data, configuration)
+        base = pin.updateFramePlacement(model, data, root)
+        pose = base.actInv(pin.updateFramePlacement(model, data, frame))
         assert np.abs(pose.translation - positions[row]).max() < 1e-13
         assert np.abs(pose.rotation - rotations[row]).max() < 1e-13
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from irlx.verifier.paths import line_deviation
+from irlx.verifier.paths import LineWay
 
 START = (np.array([0.3, -0.2, 0.5]), Rotation.from_rotvec([0.2, 0.5, -0.4]))
 
@@ -16,7 +16,7 @@ def poses(step, turn, s):
 
 def deviation(step, turn, positions, rotations):
     goal = (START[0] + np.array(step), (START[1] * Rotation.from_rotvec(turn)).as_matrix())
-    return line_deviation((START[0], START[1].as_matrix()), goal, positions, rotations)
+    return LineWay((START[0], START[1].as_matrix()), goal).deviation(positions, rotations)
 
 
 @pytest.mark.req("MOT-20")

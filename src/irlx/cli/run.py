@@ -88,8 +88,10 @@ def command(options: argparse.Namespace) -> int:
     for path in outputs:
         run.save(path)
     reports = {} if options.no_verify else {str(path): _verified(path, job) for path in outputs}
-    _print_summary(run, outputs, reports, options)
-    return 0 if all(report.passed for report in reports.values()) else 1
+    broken = [found for name, report in reports.items() for found in report.diagnostics(name)]
+    print_diagnostics(broken)
+    _print_summary(run, outputs, reports, broken, options)
+    return 1 if broken else 0
 
 
 def _prepared(options: argparse.Namespace) -> tuple[Job, list[Path]]:
@@ -194,7 +196,11 @@ def _verified(path: Path, job: Job) -> Any:
 
 
 def _print_summary(
-    run: Run, outputs: list[Path], reports: dict[str, Any], options: argparse.Namespace
+    run: Run,
+    outputs: list[Path],
+    reports: dict[str, Any],
+    broken: list[Diagnostic],
+    options: argparse.Namespace,
 ) -> None:
     from irlx.cli.output import encodable
     from irlx.report.terminal import summary_text, verification_line
@@ -205,7 +211,7 @@ def _print_summary(
             "tick": run.explanation.to_plain() if run.explanation is not None else None,
             "files": [str(path) for path in outputs],
             "verified": {name: report.passed for name, report in reports.items()},
-            "diagnostics": _plain_diagnostics(run.diagnostics),
+            "diagnostics": _plain_diagnostics([*run.diagnostics, *broken]),
         }
         print(json.dumps(plain, indent=2))
         return

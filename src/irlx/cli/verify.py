@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
 from typing import Any
 
 _EXAMPLE = "example:\n  irlx verify programs/koch/square.irdata --program programs/koch/square.irl\n"
@@ -14,22 +15,25 @@ def add_parser(commands: Any) -> None:
     parser = commands.add_parser(
         "verify",
         help="check a written joint stream independently",
-        description="Check a written joint stream: limits by differences, path, goals, checksum.",
+        description="Check a written joint stream: checksum, blocks, limits by differences, paths, goals.",
         epilog=_EXAMPLE,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("stream", metavar="OUT", help="stream file: .irdata, .npz or .csv")
     parser.add_argument("--cell", metavar="C.toml", help="cell file with the robot (default: as recorded)")
-    parser.add_argument("--program", metavar="P.irl", help="require that the stream comes from this program")
+    parser.add_argument(
+        "--program", metavar="P.irl", help="require that the stream's blocks are those of this program"
+    )
     parser.add_argument("--json", action="store_true", help="print the report as JSON")
     parser.set_defaults(command=command)
 
 
 def command(options: argparse.Namespace) -> int:
     """Print the table of checks on stdout; 1 where one fails."""
+    from irlx.cli.output import encodable
     from irlx.verification import verify
-    from irlx.verifier import render_table, to_plain
 
     report = verify(options.stream, options.program, options.cell)
-    print(json.dumps(to_plain(report), indent=2) if options.json else render_table(report))
+    words = json.dumps(report.to_plain(), indent=2) if options.json else str(report)
+    print(encodable(words, sys.stdout))
     return 0 if report.passed else 1

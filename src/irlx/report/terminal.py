@@ -7,7 +7,7 @@ from math import degrees
 
 from irlx.report.events import LimitActive, Slowed
 from irlx.report.summary import LimitUse, Summary
-from irlx.verifier import Report
+from irlx.verifier import Report, verdict
 
 _LABEL = 12
 _MOST_SPANS = 4
@@ -47,10 +47,9 @@ def verification_line(name: str, report: Report) -> str:
     """One line on a verified file."""
     if not report.passed:
         first = report.failed[0]
-        return _line("VERIFY", f"FAILED {name}: {first.name}: {first.text}")
-    made = len(report.checks) - len(report.unchecked)
-    words = f"{name}: {made} checks passed"
-    return _line("verified", words + (f", {len(report.unchecked)} not made" if report.unchecked else ""))
+        return _line("VERIFY", f"{name}: {verdict(report)}; {first.name}: {first.text}")
+    unmade = f", {len(report.unchecked)} not made" if report.unchecked else ""
+    return _line("verified", f"{name}: {len(report.made)} checks passed{unmade}")
 
 
 def _line(label: str, words: str) -> str:

@@ -1,9 +1,10 @@
 """Joint streams: the samples and blocks of a run, their file formats, and the independent verifier."""
 
 from irlx.streams.error import StreamError
-from irlx.streams.formats import KNOWN_ENDINGS, read_stream, write_stream
-from irlx.streams.irdata import IrdataWriter, read_irdata
+from irlx.streams.formats import KNOWN_ENDINGS, read_stream, scan_stream, write_stream
+from irlx.streams.irdata import IrdataWriter, read_irdata, scan_irdata
 from irlx.streams.joint_stream import FORMAT_VERSION, BlockRecord, JointStream, StreamHeader
+from irlx.streams.scan import RowBatch, ScanItem, StatedRates, StreamEnd, collect
 
 __all__ = [
     "FORMAT_VERSION",
@@ -11,9 +12,16 @@ __all__ = [
     "BlockRecord",
     "IrdataWriter",
     "JointStream",
+    "RowBatch",
+    "ScanItem",
+    "StatedRates",
+    "StreamEnd",
     "StreamError",
     "StreamHeader",
+    "collect",
     "read_irdata",
     "read_stream",
+    "scan_irdata",
+    "scan_stream",
     "write_stream",
 ]

@@ -3,26 +3,29 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from irlx.diagnostics import report
-from irlx.streams.csv_format import read_csv, write_csv
+from irlx.streams.csv_format import write_csv
+from irlx.streams.csv_reader import scan_csv
 from irlx.streams.error import StreamError
-from irlx.streams.irdata import IrdataWriter, read_irdata
+from irlx.streams.irdata import IrdataWriter, scan_irdata
 from irlx.streams.joint_stream import JointStream
-from irlx.streams.npz_format import read_npz, write_npz
+from irlx.streams.npz_format import write_npz
+from irlx.streams.npz_reader import scan_npz
+from irlx.streams.scan import ScanItem, collect
 
 
 @dataclass(frozen=True)
 class StreamFormat:
-    """One format: its file ending, a title for people, writer and reader, and whether blocks survive."""
+    """One format: its file ending, a title for people, writer and scanner, and whether blocks survive."""
 
     ending: str
     title: str
     write: Callable[[JointStream, Path], None]
-    read: Callable[[Path], JointStream]
+    scan: Callable[[Path], Iterator[ScanItem]]
     carries_blocks: bool
 
 
@@ -45,9 +48,9 @@ def write_irdata(stream: JointStream, path: str | os.PathLike[str]) -> None:
 FORMATS = {
     known.ending: known
     for known in (
-        StreamFormat(".irdata", "IRDATA-like records", write_irdata, read_irdata, carries_blocks=True),
-        StreamFormat(".csv", "CSV", write_csv, read_csv, carries_blocks=False),
-        StreamFormat(".npz", "NPZ", write_npz, read_npz, carries_blocks=True),
+        StreamFormat(".irdata", "IRDATA-like records", write_irdata, scan_irdata, carries_blocks=True),
+        StreamFormat(".csv", "CSV", write_csv, scan_csv, carries_blocks=False),
+        StreamFormat(".npz", "NPZ", write_npz, scan_npz, carries_blocks=True),
     )
 }
 """Every format by its ending, lower case with the dot."""
@@ -69,7 +72,17 @@ def read_stream(path: str | os.PathLike[str]) -> JointStream:
 
     Raises StreamError: IRL707 for an unknown ending, otherwise what the reader of the format raises.
     """
-    return _format_of(path, "IRL707").read(Path(path))
+    return collect(scan_stream(path))
+
+
+def scan_stream(path: str | os.PathLike[str]) -> Iterator[ScanItem]:
+    """Scan of a stream file in the format of the path's ending, with little memory whatever its size.
+
+    The header comes first, the end last, block records and batches of rows in between. Raises
+    StreamError: IRL707 for an unknown ending at once, otherwise what the scanner of the format raises,
+    when what stands before the damage has been given out.
+    """
+    return _format_of(path, "IRL707").scan(Path(path))
 
 
 def _format_of(path: str | os.PathLike[str], code: str) -> StreamFormat:

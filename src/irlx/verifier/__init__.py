@@ -1,7 +1,23 @@
-"""The independent verifier of joint streams; shares no code with what makes them."""
+"""The independent verifier of joint streams.
 
-from irlx.verifier.checks import CHECKS, verify_stream
+It shares with the rest of irlx the readers of streams, blocks, plain robot data and the promised numbers,
+and no code with what makes streams: forward kinematics, differences and geometry are its own.
+"""
+
+from irlx.verifier.checks import CHECKS, verify_scans, verify_stream
+from irlx.verifier.provenance import Reference
 from irlx.verifier.report import Check, Finding, Report
-from irlx.verifier.table import render_table, to_plain
+from irlx.verifier.table import render_table, to_plain, verdict
 
-__all__ = ["CHECKS", "Check", "Finding", "Report", "render_table", "to_plain", "verify_stream"]
+__all__ = [
+    "CHECKS",
+    "Check",
+    "Finding",
+    "Reference",
+    "Report",
+    "render_table",
+    "to_plain",
+    "verdict",
+    "verify_scans",
+    "verify_stream",
+]

@@ -8,7 +8,7 @@ import numpy as np
 
 from irlx.blocks import ArcCourse
 from irlx.streams.joint_stream import Floats
-from irlx.verifier.paths import PathDeviation, line_deviation, turn_deviation
+from irlx.verifier.paths import LineWay, PathDeviation, Turn
 
 LEAST_HEIGHT = 1e-7
 """Three points that are nearer to a line than this, m, make no circle: a tenth of what a move needs."""
@@ -20,8 +20,6 @@ NEARLY = 1e-6
 
 SHORT_WAY = 1e-6
 """Ways shorter than this, m, come from a tiny ANGLE."""
-
-Pose = tuple[Floats, Floats]
 
 
 @dataclass(frozen=True)
@@ -85,50 +83,68 @@ def arc_shape(start: Floats, via: Floats, goal: Floats, angle: float | None) -> 
     return ArcShape(start, shape.forward, inward, 1.0 / radius, at_via, travel)
 
 
-def arc_deviation(
-    shape: ArcShape,
-    course: ArcCourse,
-    rotations: tuple[Floats, Floats, Floats],
-    rows: Pose,
-    most_step: float,
-) -> PathDeviation:
-    """Deviation of rows (positions (R, 3), rotations (R, 3, 3)) of a move from its arc.
+class ArcWay:
+    """A CIRCLE's way along its arc; rows are given to it in order.
 
     `rotations` are those at start, via and end, (3, 3); `most_step` is the largest angle, rad, that the
     program's speed allows between rows: it tells in which round of a circle a row lies.
     """
-    start, via, goal = rotations
-    if shape.travel < SHORT_WAY * shape.flatness:
+
+    def __init__(
+        self,
+        shape: ArcShape,
+        course: ArcCourse,
+        rotations: tuple[Floats, Floats, Floats],
+        most_step: float,
+    ) -> None:
+        start, via, goal = rotations
+        self._shape = shape
+        self._most_step = most_step
+        self._raw, self._angle = 0.0, 0.0
         # So short a way is its own chord, and too short to take the share of a turn from.
-        return line_deviation((shape.start, start), (shape.end, goal), *rows)
-    angles = _rounds(shape.angles(rows[0]), most_step)
-    inside = np.clip(angles, 0.0, shape.travel)
-    share = inside / shape.travel
-    if course.turns_through_via:
-        before = inside < shape.via
-        part = shape.via / shape.travel
-        off_turn = np.where(
+        self._chord: LineWay | None = None
+        if shape.travel < SHORT_WAY * shape.flatness:
+            self._chord = LineWay((shape.start, start), (shape.end, goal))
+        through = course.turns_through_via
+        self._turns = [Turn(start, via), Turn(via, goal)] if through else [Turn(start, goal)]
+
+    def deviation(self, positions: Floats, rotations: Floats) -> PathDeviation:
+        """Deviation of the next rows (positions (R, 3), rotations (R, 3, 3)) from the arc."""
+        if self._chord is not None:
+            return self._chord.deviation(positions, rotations)
+        shape = self._shape
+        angles = self._rounds(shape.angles(positions))
+        inside = np.clip(angles, 0.0, shape.travel)
+        off_circle = np.linalg.norm(positions - shape.points(inside), axis=1)
+        # Of rows more than a whole turn apart nobody can tell how many turns they make.
+        travel = shape.travel if self._most_step < WHOLE_TURN else float(inside[-1])
+        off_turn = self._off_turn(inside, rotations)
+        return PathDeviation(off_circle, off_turn, inside / shape.flatness, travel / shape.flatness, False)
+
+    def _off_turn(self, inside: Floats, rotations: Floats) -> Floats:
+        share = inside / self._shape.travel
+        if len(self._turns) == 1:
+            return self._turns[0].off(share, rotations)
+        before = inside < self._shape.via
+        part = self._shape.via / self._shape.travel
+        to_via, from_via = self._turns
+        return np.where(
             before,
-            turn_deviation(start, via, _eased(share / part), rows[1], before),
-            turn_deviation(via, goal, 1.0 - _eased((1.0 - share) / (1.0 - part)), rows[1], ~before),
+            to_via.off(_eased(share / part), rotations, before),
+            from_via.off(1.0 - _eased((1.0 - share) / (1.0 - part)), rotations, ~before),
         )
-    else:
-        off_turn = turn_deviation(start, goal, share, rows[1])
-    off_circle = np.linalg.norm(rows[0] - shape.points(inside), axis=1)
-    # Of rows more than a whole turn apart nobody can tell how many turns they make.
-    travel = shape.travel if most_step < WHOLE_TURN else float(inside[-1])
-    return PathDeviation(off_circle, off_turn, inside / shape.flatness, travel / shape.flatness)
 
+    def _rounds(self, angles: Floats) -> Floats:
+        """Angles (R,) from the start on, whole turns added so that no step is larger than `most_step`.
 
-def _rounds(angles: Floats, most_step: float) -> Floats:
-    """Angles (R,) from the start on, whole turns added so that no step is larger than `most_step`.
-
-    A step is taken for one back only where that is the shorter way; where rows may be more than half a
-    turn apart, for one forward. Rows that may be more than a whole turn apart cannot be told.
-    """
-    back = float(np.clip(WHOLE_TURN - most_step, NEARLY, np.pi))
-    steps = np.diff(angles, prepend=0.0)
-    return np.asarray(np.cumsum((steps + back) % WHOLE_TURN - back))
+        A step is taken for one back only where that is the shorter way; where rows may be more than half a
+        turn apart, for one forward. Rows that may be more than a whole turn apart cannot be told.
+        """
+        back = float(np.clip(WHOLE_TURN - self._most_step, NEARLY, np.pi))
+        steps = np.diff(angles, prepend=self._raw)
+        found = self._angle + np.cumsum((steps + back) % WHOLE_TURN - back)
+        self._raw, self._angle = float(angles[-1]), float(found[-1])
+        return np.asarray(found)
 
 
 def _eased(way: Floats) -> Floats:

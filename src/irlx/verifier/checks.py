@@ -3,98 +3,197 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Protocol
 
+import numpy as np
+
+from irlx.diagnostics import Diagnostic
 from irlx.robot.description import RobotDescription
+from irlx.robot.limits import JointLimits
+from irlx.streams.error import StreamError
 from irlx.streams.joint_stream import JointStream
-from irlx.verifier.closure import check_closure
+from irlx.verifier.closure import ClosureChecks
 from irlx.verifier.evidence import Evidence
-from irlx.verifier.geometry import check_goals, check_joint_moves, check_paths, check_tool
-from irlx.verifier.limits import check_limits
-from irlx.verifier.report import FAILED, NOT_CHECKED, OK, Check, Report
-from irlx.verifier.structure import (
-    check_blocks,
-    check_complete,
-    check_finite,
-    check_frozen,
-    check_robot,
-    check_start,
-    check_stops,
-    check_ticks,
-)
+from irlx.verifier.joint_moves import JointMoveChecks
+from irlx.verifier.limit_checks import LimitChecks, StartCheck
+from irlx.verifier.moves import check_blocks
+from irlx.verifier.outline import Outline, Scans, check_complete, check_finite, check_ticks, outline_of
+from irlx.verifier.provenance import RateChecks, Reference, ToolChecks, check_robot, check_robot_limits
+from irlx.verifier.reconfigurations import ReconfigurationChecks
+from irlx.verifier.report import FAILED, NO_CASE, NOT_CHECKED, OK, Check, Report, Subject
+from irlx.verifier.rows import Rows, rows_of
+from irlx.verifier.stillness import FrozenChecks, StopChecks
+from irlx.verifier.tool_moves import ToolMoveChecks
 
-_SAMPLES = ("start", "position limits", "speed limits", "acceleration limits", "stops")
-_BLOCKS = ("frozen joints", "PTP straight", "PTP progress", "joint goal")
-_TOOL = ("tool position", "tool orientation")
-_GEOMETRY = (
+ProgramCheck = Callable[[Outline], Check]
+"""Compares the blocks of a stream with those of a program."""
+
+CHECKS = (
+    "file",
+    "complete",
+    "ticks",
+    "finite values",
+    "written rates",
+    "blocks",
+    "program",
+    "robot",
+    "robot limits",
+    "start",
+    "position limits",
+    "speed limits",
+    "acceleration limits",
+    "stops",
+    "frozen joints",
+    "PTP straight",
+    "PTP progress",
+    "joint goal",
+    "tool position",
+    "tool orientation",
     "goal position",
     "goal orientation",
     "path position",
     "path orientation",
     "path progress",
+    "programmed speed",
+    "programmed acceleration",
+    "reconfiguration position",
+    "reconfiguration orientation",
     "cyclic closure",
 )
-
-CHECKS = ("complete", "ticks", "finite values", "blocks", "robot", *_SAMPLES, *_BLOCKS, *_TOOL, *_GEOMETRY)
 """Names of all checks in the order of a report; every report has all of them."""
 
+_ANYWAY = ("written rates", "start", "stops")
+_LIMITS = CHECKS[10:13]
+_BLOCKS = CHECKS[14:18]
+_TOOL = CHECKS[18:20]
+_MOVES = CHECKS[20:]
 
-def verify_stream(stream: JointStream, robot: RobotDescription | None) -> Report:
-    """Check a stream against itself, its blocks, and the robot it is meant for.
+_HEADER_DAMAGE = ("IRL701", "IRL705", "IRL706")
+
+
+class RowChecks(Protocol):
+    """Checks that look at a stream's rows once, in order, portion by portion."""
+
+    def __init__(self, evidence: Evidence) -> None: ...
+
+    def take(self, rows: Rows) -> None:
+        """Look at the next portion."""
+
+    def checks(self) -> list[Check]:
+        """What was found, all rows having been taken."""
+
+
+def verify_stream(
+    stream: JointStream, robot: RobotDescription | None, limits: JointLimits | None = None
+) -> Report:
+    """Check a stream in memory against itself, its blocks, and the robot it is meant for; see `verify_scans`.
+
+    With `limits` those that the stream gives as the robot's own must be these.
+    """
+    reference = None if robot is None else Reference(robot, limits)
+    return verify_scans(stream.scan, reference, stream.header.program_name)
+
+
+def verify_scans(
+    scans: Scans,
+    reference: Reference | None,
+    name: str,
+    program: ProgramCheck | None = None,
+    is_file: bool = False,
+) -> Report:
+    """Check a stream that can be scanned again and again, in portions: memory does not grow with its length.
 
     Nothing is taken from whatever made the stream: speeds and accelerations are backward differences
     of the samples, paths are rebuilt from the blocks, tool poses come from a forward kinematics of
     the verifier's own. What cannot be checked - geometry without a robot, moves without blocks,
-    anything where the ticks have gaps - is 'not checked', with the reason.
+    anything where the ticks have gaps - is 'not checked', with the reason. A damaged file fails the check
+    'file'; raises StreamError where there is no file to read.
     """
-    found = [check_complete(stream), check_ticks(stream), check_finite(stream)]
-    if any(check.status == FAILED for check in found[1:]):
-        broken = next(check.name for check in found[1:] if check.status == FAILED)
-        rest = [_not_checked(name, f"the check '{broken}' failed") for name in CHECKS[3:]]
-        return Report((*found, *rest))
-    of_robot = check_robot(stream, robot)
-    evidence = Evidence(stream, robot if of_robot.status == OK else None)
-    of_blocks = check_blocks(evidence)
-    found += [of_blocks, of_robot, *_sample_checks(evidence, of_blocks)]
-    no_robot = "" if evidence.robot is not None else of_robot.detail
-    no_blocks = _why_no_blocks(of_blocks)
-    found += _checked(_BLOCKS, lambda: [check_frozen(evidence), *check_joint_moves(evidence)], no_blocks)
-    found += _checked(_TOOL, lambda: check_tool(evidence), no_robot)
-    found += _checked(
-        _GEOMETRY,
-        lambda: [*check_goals(evidence), *check_paths(evidence), check_closure(evidence)],
-        no_robot or no_blocks,
-    )
-    return Report(tuple(found))
+    try:
+        outline = outline_of(scans)
+    except StreamError as error:
+        if error.reason.code not in _HEADER_DAMAGE:
+            raise
+        found = [_file_check(error.reason)]
+        return _report(found, "nothing of the stream can be read", Subject(name))
+    header = outline.header
+    subject = Subject(name, header.program_name, header.robot_name, outline.rows, header.tick_ns)
+    found = [
+        _file_check(outline.damage) if is_file else Check("file", NO_CASE, detail="not a file"),
+        check_complete(outline),
+        check_ticks(outline),
+        check_finite(outline),
+        check_robot(header, reference),
+        check_robot_limits(header, reference),
+    ]
+    why_not = _unreadable(outline, found)
+    if why_not:
+        return _report(found, why_not, subject)
+    # Values too large to square are found by what follows: infinite, or no number, they pass no comparison.
+    with np.errstate(all="ignore"):
+        of_robot = next(check for check in found if check.name == "robot")
+        found += _judged(scans, outline, of_robot, reference, program)
+    return _report(found, "", subject)
 
 
-def _sample_checks(evidence: Evidence, of_blocks: Check) -> list[Check]:
-    """Checks that need samples only; limits also need blocks that fit, or none."""
-    limits = ("position", "speed", "acceleration")
-    units = {"position": "rad|m", "speed": "rad/s|m/s", "acceleration": "rad/s2|m/s2"}
-    found = [check_start(evidence)]
-    for kind in limits:
-        name = f"{kind} limits"
-        if of_blocks.status == FAILED:
-            found.append(_not_checked(name, _why_no_blocks(of_blocks)))
-            continue
-        tally = evidence.tally(name, units[kind])
-        check_limits(kind, evidence.stream, evidence.limits, tally)
-        if of_blocks.status == NOT_CHECKED:
-            tally.detail = "the robot's own limits only: the stream carries no blocks"
-        found.append(tally.check())
-    return [*found, check_stops(evidence)]
+def _judged(
+    scans: Scans,
+    outline: Outline,
+    of_robot: Check,
+    reference: Reference | None,
+    program: ProgramCheck | None,
+) -> list[Check]:
+    """Checks of blocks and rows, the stream being whole enough for them."""
+    robot = reference.robot if reference is not None and of_robot.status == OK else None
+    evidence = Evidence(outline, robot)
+    of_blocks = check_blocks(outline)
+    no_blocks = "the check 'blocks' failed" if of_blocks.status == FAILED else of_blocks.detail
+    no_robot = of_robot.detail if of_robot.status == NOT_CHECKED else "the check 'robot' failed"
+    no_robot = "" if robot is not None else no_robot
+    groups: list[tuple[tuple[str, ...], str, list[type[RowChecks]]]] = [
+        (_ANYWAY, "", [RateChecks, StartCheck, StopChecks]),
+        (_LIMITS, no_blocks if of_blocks.status == FAILED else "", [LimitChecks]),
+        (_BLOCKS, no_blocks, [FrozenChecks, JointMoveChecks]),
+        (_TOOL, no_robot, [ToolChecks]),
+        (_MOVES, no_blocks or no_robot, [ToolMoveChecks, ReconfigurationChecks, ClosureChecks]),
+    ]
+    judges = [make(evidence) for _, why_not, kinds in groups if not why_not for make in kinds]
+    for rows in rows_of(scans, outline, robot):
+        for judge in judges:
+            judge.take(rows)
+    found = [of_blocks, _program(program, outline, of_blocks)]
+    found += [check for judge in judges for check in judge.checks()]
+    skipped = ((name, why_not) for names, why_not, _ in groups if why_not for name in names)
+    return found + [Check(name, NOT_CHECKED, detail=why_not) for name, why_not in skipped]
 
 
-def _why_no_blocks(of_blocks: Check) -> str:
+def _program(program: ProgramCheck | None, outline: Outline, of_blocks: Check) -> Check:
+    if program is None:
+        return Check("program", NOT_CHECKED, detail="no program is given")
     if of_blocks.status == FAILED:
-        return "the check 'blocks' failed"
-    return of_blocks.detail if of_blocks.status == NOT_CHECKED else ""
+        return Check("program", NOT_CHECKED, detail="the check 'blocks' failed")
+    return program(outline)
 
 
-def _checked(names: tuple[str, ...], make: Callable[[], list[Check]], why_not: str) -> list[Check]:
-    """The checks that `make` gives, or all of these names as not checked."""
-    return [_not_checked(name, why_not) for name in names] if why_not else make()
+def _file_check(damage: Diagnostic | None) -> Check:
+    if damage is None:
+        return Check("file", OK)
+    where = f"{damage.place.key}: " if damage.place is not None and damage.place.key else ""
+    return Check("file", FAILED, detail=f"{damage.code}: {where}{damage.message}")
 
 
-def _not_checked(name: str, why: str) -> Check:
-    return Check(name, NOT_CHECKED, detail=why)
+def _unreadable(outline: Outline, found: list[Check]) -> str:
+    """Why the rows cannot be judged, or ''."""
+    if outline.damage is not None and not outline.end_in_doubt:
+        return "the file is damaged"
+    needed = ("ticks", "finite values")
+    broken = [check.name for check in found if check.name in needed and check.status == FAILED]
+    return f"the check '{broken[0]}' failed" if broken else ""
+
+
+def _report(found: list[Check], why_not: str, subject: Subject) -> Report:
+    """Report with all checks in their order; those that were not made have a reason."""
+    by_name = {check.name: check for check in found}
+    reason = why_not or "the check 'blocks' failed"
+    checks = tuple(by_name.get(name, Check(name, NOT_CHECKED, detail=reason)) for name in CHECKS)
+    return Report(checks, subject)

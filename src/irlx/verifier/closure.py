@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
+from numpy.typing import NDArray
 
 from irlx.blocks import (
     Block,
@@ -13,63 +16,118 @@ from irlx.blocks import (
     PoseTarget,
     ReconfigureBlock,
 )
-from irlx.promises import CLOSURE, PATH_ORIENTATION, PATH_POSITION
-from irlx.verifier.evidence import Evidence
-from irlx.verifier.moves import MoveRows
+from irlx.promises import CLOSURE, PATH_ORIENTATION, PATH_POSITION, TOUCH
+from irlx.verifier.evidence import Evidence, Pose
 from irlx.verifier.report import Check
 from irlx.verifier.rotations import angle_between
-
-ACTIVE = 1e-9
-"""A limit that is this near, relative to max(1, |value|), may have kept the posture from closing."""
-
+from irlx.verifier.rows import Rows, Stretch
 
 _LED_AWAY = (
     "a limit was active, or a RECONFIGURATION, a frozen joint or joint values led away from the posture"
 )
 
 
-def check_closure(evidence: Evidence) -> Check:
+@dataclass(frozen=True)
+class _Return:
+    """A move that may come back to the pose of CYCLICSTART, whose row is `start`."""
+
+    start: int
+    led_away: bool
+
+
+class ClosureChecks:
     """Posture difference at every return to the pose of CYCLICSTART, by moves to a pose.
 
     A return whose end was governed by a limit is reported, not judged; so is one after what leads away
     from the posture, which comes back no faster than the joints can: a RECONFIGURATION, which may even have
     led to another branch of postures, frozen joints, a move to joint values.
     """
-    tally = evidence.tally("cyclic closure", "rad|m")
-    returns = _returns(evidence)
-    free = 0
-    for move, start_row, led_away in returns:
-        q = evidence.stream.q
-        difference = np.abs(q[move.last] - q[start_row])[None]
-        judged = not (led_away or _limit_active(evidence, move))
-        free += judged
-        tally.add(np.array([move.last]), difference, CLOSURE, judged & ~(difference <= CLOSURE))
-    if free < len(returns):
-        tally.detail = f"{len(returns) - free} of {len(returns)} returns not judged: {_LED_AWAY}"
-    elif not returns:
-        tally.detail = "no move under the cyclic option returned to its start pose"
-    return tally.check()
+
+    def __init__(self, evidence: Evidence) -> None:
+        self._evidence = evidence
+        self._tally = evidence.tally("cyclic closure", "rad|m")
+        self._returns = _possible_returns(evidence)
+        self._starts = {found.start for found in self._returns.values()}
+        self._poses: dict[int, Pose] = {}
+        self._count, self._judged = 0, 0
+        self._active_last, self._moved_before = False, False
+
+    def take(self, rows: Rows) -> None:
+        """Add a portion."""
+        for start in sorted(self._starts - self._poses.keys()):
+            place = rows.place(start)
+            if place is not None:
+                self._poses[start] = rows.positions[place].copy(), rows.rotations[place].copy()
+        for stretch in rows.stretches:
+            found = self._returns.get(stretch.block)
+            if found is None:
+                continue
+            self._watch_limits(rows, stretch)
+            if stretch.ends:
+                last = stretch.after.stop - 1
+                self._end(int(stretch.rows[-1]), found, (rows.positions[last], rows.rotations[last]))
+
+    def _watch_limits(self, rows: Rows, stretch: Stretch) -> None:
+        """Keep whether a limit is reached in the last row that moves, or in the one after."""
+        if stretch.begins:
+            self._active_last, self._moved_before = False, False
+        moved = (rows.postures[stretch.after] != rows.postures[stretch.before]).any(axis=1)
+        if not moved.any():
+            if self._moved_before:
+                self._active_last = self._active_last or bool(self._active(rows, stretch, 0, 1).any())
+            self._moved_before = False
+            return
+        row = int(np.flatnonzero(moved)[-1])
+        self._active_last = bool(self._active(rows, stretch, row, row + 2).any())
+        self._moved_before = row == len(moved) - 1
+
+    def _active(self, rows: Rows, stretch: Stretch, start: int, stop: int) -> NDArray[np.bool_]:
+        part = slice(stretch.part.start + start, min(stretch.part.start + stop, stretch.part.stop))
+        first, count = rows.first + part.start, part.stop - part.start
+        active = np.zeros(count, dtype=np.bool_)
+        for kind, values in (("position", rows.q), ("speed", rows.qd), ("acceleration", rows.qdd)):
+            lower, upper = self._evidence.limits.bounds(kind, first, count)
+            here = values[part]
+            reach = TOUCH * np.maximum(1.0, np.abs(here))
+            active |= ((here >= upper - reach) | (here <= lower + reach)).any(axis=1)
+        return active
+
+    def _end(self, row: int, found: _Return, pose: Pose) -> None:
+        if not _same_pose(pose, self._poses[found.start]):
+            return
+        evidence = self._evidence
+        difference = np.abs(evidence.posture(row) - evidence.posture(found.start))[None]
+        judged = not (found.led_away or self._active_last)
+        self._count += 1
+        self._judged += judged
+        self._tally.add(np.array([row]), difference, CLOSURE, judged & ~(difference <= CLOSURE))
+
+    def checks(self) -> list[Check]:
+        """Cyclic closure."""
+        if self._judged < self._count:
+            self._tally.detail = (
+                f"{self._count - self._judged} of {self._count} returns not judged: {_LED_AWAY}"
+            )
+        return [self._tally.check()]
 
 
-def _returns(evidence: Evidence) -> list[tuple[MoveRows, int, bool]]:
-    """Finished moves to a pose that end at the pose of CYCLICSTART, the row of that start, and whether
-    something led away since. Moves WITH RECONFIGURATION are none: the cyclic option is off for them."""
+def _possible_returns(evidence: Evidence) -> dict[int, _Return]:
+    """Finished moves to a pose under the cyclic option, by id, but for those WITH RECONFIGURATION: the
+    option is off for them."""
     moves = {move.block.id: move for move in evidence.moves}
-    found: list[tuple[MoveRows, int, bool]] = []
+    found: dict[int, _Return] = {}
     start: int | None = None
     led_away = False
-    for record in evidence.stream.records:
-        if isinstance(record.block, CyclicBlock):
-            start, led_away = record.tick if record.block.active else None, False
-        led_away = led_away or _leads_away(record.block)
-        if _reconfigures(record.block):
+    for record in evidence.outline.records:
+        block = record.block
+        if isinstance(block, CyclicBlock):
+            start, led_away = record.tick if block.active else None, False
+        led_away = led_away or _leads_away(block)
+        if start is None or _reconfigures(block) or not isinstance(block, MoveBlock):
             continue
-        if start is None or not isinstance(record.block, MoveBlock):
-            continue
-        move = moves[record.block.id]
-        to_pose = isinstance(record.block.target, PoseTarget)
-        if to_pose and move.finished and move.last > move.start and _same_pose(evidence, move.last, start):
-            found.append((move, start, led_away))
+        move = moves[block.id]
+        if isinstance(block.target, PoseTarget) and move.finished and move.last > move.start:
+            found[block.id] = _Return(start, led_away)
     return found
 
 
@@ -83,23 +141,6 @@ def _reconfigures(block: Block) -> bool:
     return clause is not None or isinstance(block, ReconfigureBlock)
 
 
-def _same_pose(evidence: Evidence, first: int, second: int) -> bool:
-    one, other = evidence.pose(first), evidence.pose(second)
+def _same_pose(one: Pose, other: Pose) -> bool:
     near = float(np.linalg.norm(one[0] - other[0])) <= PATH_POSITION
     return near and float(angle_between(one[1], other[1])) <= PATH_ORIENTATION
-
-
-def _limit_active(evidence: Evidence, move: MoveRows) -> bool:
-    """Whether a limit is reached at the last row in which the move still moved, or in the one after it."""
-    stream = evidence.stream
-    moving = np.flatnonzero((np.diff(stream.q[move.start : move.last + 1], axis=0) != 0.0).any(axis=1))
-    if not moving.size:
-        return False
-    row = move.start + 1 + int(moving[-1])
-    part = slice(row, min(row + 2, len(stream.ticks)))
-    for kind, values in (("position", stream.q), ("speed", stream.qd), ("acceleration", stream.qdd)):
-        lower, upper = evidence.limits.bounds(kind, part)
-        reach = ACTIVE * np.maximum(1.0, np.abs(values[part]))
-        if ((values[part] >= upper - reach) | (values[part] <= lower + reach)).any():
-            return True
-    return False

@@ -17,7 +17,10 @@ from irlx.blocks import (
     PoseTarget,
     ReconfigureBlock,
 )
-from irlx.streams.joint_stream import Integers, JointStream
+from irlx.promises import UNIT_LENGTH
+from irlx.streams.joint_stream import Integers
+from irlx.verifier.outline import Outline
+from irlx.verifier.report import FAILED, NOT_CHECKED, OK, Check
 
 
 @dataclass(frozen=True)
@@ -39,46 +42,66 @@ class MoveRows:
         return np.arange(self.start + 1, self.last + 1)
 
 
-def segments(block: Integers) -> list[tuple[int, int, int]]:
-    """Stretches of equal block ids: (id, first row, last row) in order."""
-    starts = np.flatnonzero(np.diff(block, prepend=block[:1] - 1))
-    ends = np.append(starts[1:], len(block)) - 1
-    return list(zip(block[starts].tolist(), starts.tolist(), ends.tolist(), strict=True))
-
-
-def moves_of(stream: JointStream) -> list[MoveRows]:
-    """The moves of a stream in order; ticks must count from 0 without gaps and records must fit."""
-    places = {identity: (first, last) for identity, first, last in segments(stream.block)}
-    final = len(stream.ticks) - 1
+def moves_of(outline: Outline) -> list[MoveRows]:
+    """The moves of a stream in order; its records must fit its rows."""
+    places = {identity: last for identity, _, last in outline.segments()}
+    final = outline.rows - 1
     moves = []
-    for record in stream.records:
+    for record in outline.records:
         if isinstance(record.block, MoveBlock):
-            start = record.tick
-            last = places.get(record.block.id, (start, start))[1]
-            moves.append(MoveRows(record.block, start, last, stream.complete or last != final))
+            last = places.get(record.block.id, record.tick)
+            moves.append(MoveRows(record.block, record.tick, last, outline.complete or last != final))
     return moves
 
 
-def misfit(stream: JointStream) -> tuple[int, str] | None:
+def check_blocks(outline: Outline) -> Check:
+    """Every sample belongs to a recorded move, which begins right after the row it was recorded at."""
+    if not carries_blocks(outline):
+        return Check("blocks", NOT_CHECKED, detail="the stream carries no blocks")
+    found = _misfit(outline)
+    if found is None:
+        return Check("blocks", OK)
+    return Check("blocks", FAILED, detail=f"at tick {found[0]}: {found[1]}")
+
+
+def carries_blocks(outline: Outline) -> bool:
+    """Whether moves are recorded; some formats carry samples only."""
+    motions = MoveBlock | ReconfigureBlock
+    recorded = any(isinstance(record.block, motions) for record in outline.records)
+    return recorded or not outline.ids.any()
+
+
+def _misfit(outline: Outline) -> tuple[int, str] | None:
     """Tick and words of the first place where samples and block records contradict each other."""
-    joints, rows = stream.header.joints, len(stream.ticks)
+    joints, rows = outline.header.joints, outline.rows
+    found = list(outline.segments())
     begins: dict[int, int] = {}
     previous = 0
-    for record in stream.records:
+    for due, record in enumerate(outline.records, 1):
         reason = _wrong_numbers(record.block, joints)
         if reason:
             return record.tick, f"block {record.block.id}: {reason}"
         if record.tick < previous:
             return record.tick, f"block {record.block.id} begins at tick {record.tick}, out of order"
-        if record.block.id in begins:
-            return record.tick, f"two blocks have the id {record.block.id}"
+        if record.block.id != due:
+            return record.tick, f"block {record.block.id} stands where {due} is due: one is missing or added"
         previous = record.tick
         moves = isinstance(record.block, MoveBlock | ReconfigureBlock)
         begins[record.block.id] = record.tick if moves else -1
     if previous >= rows:
         late = f"a block begins at tick {previous}, but the samples end at {rows - 1}"
-        return _misplaced(segments(stream.block), begins) or (previous, late)
-    return _misplaced(segments(stream.block), begins)
+        return _misplaced(found, begins) or (previous, late)
+    return _misplaced(found, begins) or _in_motion(outline)
+
+
+def _in_motion(outline: Outline) -> tuple[int, str] | None:
+    """First block that begins while another one still moves."""
+    ends = set(outline.lasts.tolist())
+    for record in outline.records:
+        if record.tick not in ends:
+            moving = outline.block_at(record.tick)
+            return record.tick, f"block {record.block.id} begins in the midst of block {moving}"
+    return None
 
 
 def _misplaced(found: list[tuple[int, int, int]], begins: dict[int, int]) -> tuple[int, str] | None:
@@ -130,7 +153,7 @@ def _wrong_targets(block: MoveBlock, joints: int) -> str:
             return f"its target has {len(target.values)} values for {joints} joints"
         if isinstance(target, PoseTarget) and target.orientation is not None:
             length = float(np.linalg.norm(target.orientation))
-            if not abs(length - 1.0) < 1e-6:
+            if not abs(length - 1.0) <= UNIT_LENGTH:
                 return f"its orientation is a quaternion of length {length:.6g}"
     return ""
 

@@ -1,4 +1,4 @@
-"""Geometry of moves, rebuilt from their blocks: straight lines, pure turns, and lines in joint space."""
+"""Geometry of moves, rebuilt from their blocks: straight lines and turns."""
 
 from __future__ import annotations
 
@@ -14,8 +14,13 @@ TURN_RULES = 1e-3
 """A path shorter than this many m per rad of its turn takes its parameter from the angle: the position
 would give it too coarsely."""
 
+DECIDED = 1e-5
+"""Rows that fit one way round so much better, rad, than the other tell which one is taken."""
+
 HALF_TURN = 1e-6
 """Turns nearer than this to half a turn, rad, may go either way round."""
+
+Pose = tuple[Floats, Floats]
 
 
 @dataclass(frozen=True)
@@ -23,80 +28,103 @@ class PathDeviation:
     """How rows of a move lie to its path, each of shape (R,).
 
     `position` m and `orientation` rad off the path; `along` = distance travelled, in the unit that
-    gives the parameter (m, or rad where the turn does); `length` of the whole way in that unit.
+    gives the parameter (m, or rad where the turn does, `by_angle`); `length` of the whole way in that unit.
     """
 
     position: Floats
     orientation: Floats
     along: Floats
     length: float
+    by_angle: bool
 
 
-def line_deviation(
-    start: tuple[Floats, Floats], goal: tuple[Floats, Floats], positions: Floats, rotations: Floats
-) -> PathDeviation:
-    """Deviation of poses (R, 3), (R, 3, 3) from the straight path between two poses.
+class LineWay:
+    """The straight way between two poses (position (3,), rotation (3, 3)); rows are given to it in order.
 
     The position runs along the segment, the orientation turns about one fixed axis, the shortest
     way, in proportion to it: R(s) = R_start exp(s w), w = log(R_start' R_goal). The parameter s of
     a pose is that of the nearest point of the segment; of a pure turn, that of the nearest angle.
+    Of two ways round as long as each other, the one that the rows take counts.
     """
-    found = [_deviation(start, goal, way, positions, rotations) for way in _turns(start[1], goal[1])]
-    return min(found, key=lambda deviation: float(deviation.orientation.max(initial=0.0)))
 
+    def __init__(self, start: Pose, goal: Pose) -> None:
+        self._start = start
+        self._step = goal[0] - start[0]
+        self._turns = shortest_turns(start[1], goal[1])
 
-def turn_deviation(
-    start: Floats, goal: Floats, share: Floats, rotations: Floats, counts: NDArray[np.bool_] | None = None
-) -> Floats:
-    """Angle (R,) rad between rotations (R, 3, 3) and the turn from start to goal (3, 3) at the shares (R,).
+    @property
+    def angle(self) -> float:
+        """Angle of the turn, rad."""
+        return float(np.linalg.norm(self._turns[0]))
 
-    Of two ways round as long as each other the one that fits better to the rows that count.
-    """
-    turned = start.T @ rotations
-    counts = np.ones(len(share), dtype=bool) if counts is None else counts
-    found = []
-    for turn in _turns(start, goal):
-        angle = float(np.linalg.norm(turn))
+    def deviation(self, positions: Floats, rotations: Floats) -> PathDeviation:
+        """Deviation of the next rows (R, 3), (R, 3, 3) from the way."""
+        found = [self._from(turn, positions, rotations) for turn in self._turns]
+        best, self._turns = settled([deviation.orientation for deviation in found], self._turns)
+        return found[best]
+
+    def _from(self, turn: Floats, positions: Floats, rotations: Floats) -> PathDeviation:
+        length, angle = float(np.linalg.norm(self._step)), float(np.linalg.norm(turn))
+        offsets = positions - self._start[0]
+        turned = self._start[1].T @ rotations
+        by_angle = not length > TURN_RULES * angle
+        if not by_angle:
+            scale = length
+            parameter = offsets @ self._step / length**2
+        elif angle > 0.0:
+            scale = angle
+            angles = _angles_about(turn / angle, turned)
+            # Half of what the turn leaves of a full one lies before its start, half behind its end.
+            parameter = np.where(angles < 0.5 * angle - np.pi, angles + 2.0 * np.pi, angles) / angle
+        else:
+            scale, parameter = 0.0, np.zeros(len(positions))
+        inside = np.clip(parameter, 0.0, 1.0)
         axis = turn / angle if angle > 0.0 else np.array([1.0, 0.0, 0.0])
-        found.append(angle_between(turned, about_axis(axis, share * angle)))
-    return min(found, key=lambda off: float(off[counts].max(initial=0.0)))
+        off_line = np.linalg.norm(offsets - inside[:, None] * self._step, axis=1)
+        off_turn = angle_between(turned, about_axis(axis, inside * angle))
+        return PathDeviation(off_line, off_turn, inside * scale, scale, by_angle)
 
 
-def _turns(start: Floats, goal: Floats) -> list[Floats]:
+class Turn:
+    """The turn from one rotation (3, 3) to another about one fixed axis; rows are given to it in order.
+
+    Of two ways round as long as each other, the one that the rows take counts.
+    """
+
+    def __init__(self, start: Floats, goal: Floats) -> None:
+        self._start = start
+        self._ways = shortest_turns(start, goal)
+
+    def off(self, share: Floats, rotations: Floats, counts: NDArray[np.bool_] | None = None) -> Floats:
+        """Angle (R,) rad between rotations (R, 3, 3) and the turn at the shares (R,) of its way.
+
+        Only rows that `counts` (R,) help to tell which way round it goes.
+        """
+        turned = self._start.T @ rotations
+        counts = np.ones(len(share), dtype=bool) if counts is None else counts
+        found = []
+        for way in self._ways:
+            angle = float(np.linalg.norm(way))
+            axis = way / angle if angle > 0.0 else np.array([1.0, 0.0, 0.0])
+            found.append(angle_between(turned, about_axis(axis, share * angle)))
+        best, self._ways = settled([off[counts] for off in found], self._ways)
+        return found[best]
+
+
+def settled(offs: list[Floats], ways: list[Floats]) -> tuple[int, list[Floats]]:
+    """Which of several ways round fits the rows better, and the ways still open after these rows."""
+    worst = [float(off.max(initial=0.0)) for off in offs]
+    best = int(np.argmin(worst))
+    return best, ([ways[best]] if max(worst) - min(worst) > DECIDED else ways)
+
+
+def shortest_turns(start: Floats, goal: Floats) -> list[Floats]:
     """Rotation vectors (3,) of the shortest turn from start to goal, in the frame of the start."""
     turn = rotation_vectors((start.T @ goal)[None])[0]
     if np.pi - np.linalg.norm(turn) >= HALF_TURN:
         return [turn]
     # Rounding decides the sign of the axis; the other way round is as short.
     return [turn, turn - 2.0 * np.pi * turn / np.linalg.norm(turn)]
-
-
-def _deviation(
-    start: tuple[Floats, Floats],
-    goal: tuple[Floats, Floats],
-    turn: Floats,
-    positions: Floats,
-    rotations: Floats,
-) -> PathDeviation:
-    step = goal[0] - start[0]
-    length, angle = float(np.linalg.norm(step)), float(np.linalg.norm(turn))
-    offsets = positions - start[0]
-    turned = start[1].T @ rotations
-    if length > TURN_RULES * angle:
-        scale = length
-        parameter = offsets @ step / length**2
-    elif angle > 0.0:
-        scale = angle
-        angles = _angles_about(turn / angle, turned)
-        # Half of what the turn leaves of a full one lies before its start, half behind its end.
-        parameter = np.where(angles < 0.5 * angle - np.pi, angles + 2.0 * np.pi, angles) / angle
-    else:
-        scale, parameter = 0.0, np.zeros(len(positions))
-    inside = np.clip(parameter, 0.0, 1.0)
-    axis = turn / angle if angle > 0.0 else np.array([1.0, 0.0, 0.0])
-    off_line = np.linalg.norm(offsets - inside[:, None] * step, axis=1)
-    off_turn = angle_between(turned, about_axis(axis, inside * angle))
-    return PathDeviation(off_line, off_turn, inside * scale, scale)
 
 
 def _angles_about(axis: Floats, turned: Floats) -> Floats:
@@ -111,17 +139,3 @@ def _angles_about(axis: Floats, turned: Floats) -> Floats:
     )
     cosine = np.trace(turned, axis1=1, axis2=2) - np.einsum("i,rij,j->r", axis, turned, axis)
     return np.asarray(np.arctan2(sine, cosine))
-
-
-def joint_line_deviation(q: Floats) -> tuple[Floats, Floats]:
-    """Deviation (R, n) of joint values q (R, n) from the straight line between first and last row.
-
-    Second result: distance travelled along it (R,), in the joint space's Euclidean norm.
-    """
-    step = q[-1] - q[0]
-    length = float(np.linalg.norm(step))
-    offsets = q - q[0]
-    if length == 0.0:
-        return np.abs(offsets), np.zeros(len(q))
-    along = np.clip(offsets @ (step / length), 0.0, length)
-    return np.abs(offsets - along[:, None] * (step / length)), along

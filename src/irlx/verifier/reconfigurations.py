@@ -6,28 +6,35 @@ import numpy as np
 
 from irlx.blocks import ReconfigureBlock
 from irlx.promises import PATH_ORIENTATION, PATH_POSITION
-from irlx.streams.joint_stream import JointStream
-from irlx.verifier.evidence import Evidence
-from irlx.verifier.moves import segments
+from irlx.verifier.evidence import Evidence, Pose
+from irlx.verifier.report import Check
 from irlx.verifier.rotations import angle_between
-from irlx.verifier.tally import Tally
+from irlx.verifier.rows import Rows
 
 
-def reconfigurations_of(stream: JointStream) -> list[tuple[int, int]]:
-    """Row that stands when a RECONFIGURATION begins, and its last row, for each one that has rows."""
-    places = {identity: last for identity, _, last in segments(stream.block)}
-    return [
-        (record.tick, places[record.block.id])
-        for record in stream.records
-        if isinstance(record.block, ReconfigureBlock) and record.block.id in places
-    ]
+class ReconfigurationChecks:
+    """The tool in every row of a RECONFIGURATION against its pose in the row before the first one."""
 
+    def __init__(self, evidence: Evidence) -> None:
+        blocks = (record.block for record in evidence.outline.records)
+        self._ids = {block.id for block in blocks if isinstance(block, ReconfigureBlock)}
+        self._position = evidence.tally("reconfiguration position", "m")
+        self._orientation = evidence.tally("reconfiguration orientation", "rad")
+        self._held: Pose | None = None
 
-def add_reconfigurations(evidence: Evidence, position: Tally, orientation: Tally) -> None:
-    """Add how far the tool strays from its pose at the start in the rows of every RECONFIGURATION."""
-    for start, last in reconfigurations_of(evidence.stream):
-        rows = np.arange(start + 1, last + 1)
-        positions, rotations = evidence.poses
-        at, turned = evidence.pose(start)
-        position.add(rows, np.linalg.norm(positions[rows] - at, axis=1), PATH_POSITION)
-        orientation.add(rows, angle_between(turned, rotations[rows]), PATH_ORIENTATION)
+    def take(self, rows: Rows) -> None:
+        """Add a portion."""
+        for stretch in rows.stretches:
+            if stretch.block not in self._ids:
+                continue
+            if stretch.begins or self._held is None:
+                before = stretch.before.start
+                self._held = rows.positions[before].copy(), rows.rotations[before].copy()
+            positions, rotations = rows.positions[stretch.after], rows.rotations[stretch.after]
+            off = np.linalg.norm(positions - self._held[0], axis=1)
+            self._position.add(stretch.rows, off, PATH_POSITION)
+            self._orientation.add(stretch.rows, angle_between(self._held[1], rotations), PATH_ORIENTATION)
+
+    def checks(self) -> list[Check]:
+        """Tool position and orientation during RECONFIGURATION."""
+        return [self._position.check(), self._orientation.check()]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isfinite
 from typing import Any
 
-from irlx.verifier.report import Check, Finding, Report
+from irlx.verifier.report import FAILED, OK, Check, Finding, Report
 
 _COLUMNS = ("check", "status", "worst", "allowed", "where")
 
@@ -18,31 +18,75 @@ def render_table(report: Report) -> str:
     lines.insert(1, "  ".join("-" * width for width in widths))
     notes = [f"{check.name}: {check.text}" for check in report.failed]
     notes += [
-        f"{check.name}: {check.detail}" for check in report.checks if check.detail and check.status == "ok"
+        f"{check.name}: {check.detail}" for check in report.checks if check.detail and check.status == OK
     ]
-    notes += [f"{check.name} not checked: {check.detail}" for check in report.unchecked]
-    verdict = "passed" if report.passed else f"FAILED: {len(report.failed)} of {len(report.checks)} checks"
-    if report.passed and report.unchecked:
-        verdict += f", {len(report.unchecked)} checks not made"
-    return "\n".join(line.rstrip() for line in [*lines, "", *notes, verdict])
+    return "\n".join(
+        line.rstrip() for line in [_title(report), *lines, "", *notes, *_unmade(report), verdict(report)]
+    )
+
+
+def verdict(report: Report) -> str:
+    """One line: how many checks passed, failed, could not be made, and had no case."""
+    parts = []
+    if report.failed:
+        parts.append(f"FAILED: {len(report.failed)} of {len(report.made)} checks")
+    else:
+        parts.append(f"{len(report.made)} checks passed")
+    if report.unchecked:
+        parts.append(f"{len(report.unchecked)} not made")
+    if report.without_case:
+        parts.append(f"{len(report.without_case)} without a case")
+    return ", ".join(parts)
+
+
+def _title(report: Report) -> str:
+    subject = report.subject
+    words = [subject.name or "stream"]
+    if subject.tick_ns:
+        words.append(
+            f"{subject.samples} samples, {subject.duration:.6g} s in ticks of {subject.tick_ns / 1e6:g} ms"
+        )
+        words.append(f"program {subject.program}, robot {subject.robot}")
+    return ": ".join([words[0], "; ".join(words[1:])]) if len(words) > 1 else words[0]
+
+
+def _unmade(report: Report) -> list[str]:
+    """Why checks were not made, each reason once with the names it holds for."""
+    reasons: dict[str, list[str]] = {}
+    for check in report.unchecked:
+        reasons.setdefault(check.detail, []).append(check.name)
+    return [f"not checked, since {why}: {', '.join(names)}" for why, names in reasons.items()]
 
 
 def _row(check: Check) -> tuple[str, ...]:
     worst = check.worst
+    status = "FAILED" if check.status == FAILED else check.status
     if worst is None:
-        return check.name, check.status, "", "", ""
-    unit = f" {check.unit}" if check.unit else ""
+        return check.name, status, "", "", ""
+    unit = f" {worst.unit}" if worst.unit else ""
     place = [f"tick {worst.tick}"]
     if worst.joint is not None:
         place.append(f"joint {worst.joint}")
     if worst.line is not None:
         place.append(f"line {worst.line}")
-    return check.name, check.status, f"{worst.value:.6g}{unit}", f"{worst.allowed:.6g}", ", ".join(place)
+    return check.name, status, f"{worst.value:.6g}{unit}", f"{worst.allowed:.6g}", ", ".join(place)
 
 
 def to_plain(report: Report) -> dict[str, Any]:
     """Dictionary of a report that JSON can hold; numbers that are not finite become strings."""
-    return {"passed": report.passed, "checks": [_check_to_plain(check) for check in report.checks]}
+    subject = report.subject
+    return {
+        "passed": report.passed,
+        "verdict": verdict(report),
+        "stream": {
+            "name": subject.name,
+            "program": subject.program,
+            "robot": subject.robot,
+            "samples": subject.samples,
+            "duration": subject.duration,
+        },
+        "checks": [_check_to_plain(check) for check in report.checks],
+    }
 
 
 def _check_to_plain(check: Check) -> dict[str, Any]:
@@ -66,6 +110,7 @@ def _finding_to_plain(finding: Finding | None) -> dict[str, Any] | None:
         "joint": finding.joint,
         "block": finding.block,
         "line": finding.line,
+        "unit": finding.unit,
     }
 
 

@@ -5,20 +5,20 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from irlx.streams.joint_stream import Floats, Integers, JointStream
-from irlx.verifier.report import FAILED, NOT_CHECKED, OK, Check, Finding
+from irlx.streams.joint_stream import Floats, Integers
+from irlx.verifier.outline import Outline
+from irlx.verifier.report import FAILED, NO_CASE, NOT_CHECKED, OK, Check, Finding
 
 
 class Tally:
     """One check in the making: values of rows (R,) or of rows and joints (R, n) are added in any portions."""
 
-    def __init__(self, name: str, unit: str, stream: JointStream, lines: dict[int, int]) -> None:
+    def __init__(self, name: str, unit: str, outline: Outline) -> None:
         self.name = name
         self.unit = unit
         self.detail = ""
-        self.values = 0
-        self._stream = stream
-        self._lines = lines
+        self._outline = outline
+        self._empty = True
         self._worst: Finding | None = None
         self._worst_rank = -np.inf
         self._first: Finding | None = None
@@ -30,48 +30,57 @@ class Tally:
         allowed: ArrayLike,
         offends: NDArray[np.bool_] | None = None,
         rank: Floats | None = None,
+        unit: str = "",
     ) -> None:
-        """Add the values of `rows` (indices into the stream).
+        """Add the values of `rows` (indices into the stream), in one `unit` where the check has several.
 
         By default a value offends where it is not <= `allowed` (so that nan does), and the worst is
         the largest. `rank` orders values otherwise; rank -inf never becomes the worst.
         """
         if value.size == 0:
             return
-        self.values += value.size
+        self._empty = False
         allowed = np.broadcast_to(np.asarray(allowed, dtype=np.float64), value.shape)
         offends = ~(value <= allowed) if offends is None else offends
         rank = value if rank is None else rank
         top = int(np.argmax(rank))
         if rank.flat[top] > self._worst_rank:
             self._worst_rank = float(rank.flat[top])
-            self._worst = self._finding(rows, value, allowed, top)
+            self._worst = self._finding(rows, value, allowed, top, unit)
         if offends.any():
-            found = self._finding(rows, value, allowed, int(np.argmax(offends)))
+            found = self._finding(rows, value, allowed, int(np.argmax(offends)), unit)
             if self._first is None or found.tick < self._first.tick:
                 self._first = found
 
-    def _finding(self, rows: Integers, value: Floats, allowed: Floats, flat: int) -> Finding:
+    def _finding(self, rows: Integers, value: Floats, allowed: Floats, flat: int, unit: str) -> Finding:
         row = int(rows[flat if value.ndim == 1 else flat // value.shape[1]])
-        joint = None if value.ndim == 1 else self._stream.header.joint_names[flat % value.shape[1]]
-        block = int(self._stream.block[row])
-        return Finding(
-            float(value.flat[flat]),
-            float(allowed.flat[flat]),
-            int(self._stream.ticks[row]),
-            joint,
-            block,
-            self._lines.get(block),
-        )
+        names = self._outline.header.joint_names
+        joint = None if value.ndim == 1 else names[flat % value.shape[1]]
+        block = self._outline.block_at(row)
+        line = self._outline.lines.get(block)
+        unit = unit or self._unit_of(joint)
+        return Finding(float(value.flat[flat]), float(allowed.flat[flat]), row, joint, block, line, unit)
+
+    def _unit_of(self, joint: str | None) -> str:
+        """The check's unit; of units for joints that turn and slide ('rad/s|m/s') the joint's own."""
+        if joint is None or "|" not in self.unit:
+            return self.unit
+        header = self._outline.header
+        turns = header.joint_units[header.joint_names.index(joint)] == "rad"
+        return next(unit for unit in self.unit.split("|") if unit.startswith("rad") is turns)
 
     @property
     def first(self) -> Finding | None:
         """The first offence so far."""
         return self._first
 
-    def check(self, nothing: str = "") -> Check:
-        """The finished check; where no value was added and `nothing` says why, it was not made."""
-        if not self.values and nothing:
-            return Check(self.name, NOT_CHECKED, self.unit, detail=nothing)
+    def check(self, not_judged: str = "") -> Check:
+        """The finished check. Where no value was added it was not made for the reason `not_judged`, or, that
+        being '', had no case."""
+        if self._empty and not_judged:
+            return Check(self.name, NOT_CHECKED, self.unit, detail=not_judged)
+        if self._empty:
+            return Check(self.name, NO_CASE, self.unit, detail=self.detail)
         status = OK if self._first is None else FAILED
-        return Check(self.name, status, self.unit, self._worst, self._first, self.detail)
+        worst = self._worst if self._worst is not None else self._first
+        return Check(self.name, status, self.unit, worst, self._first, self.detail)

@@ -37,11 +37,11 @@ FIELD = np.dtype(
 """A number in memory: ', ', a blank, sign or blank, d, '.', four groups of four digits, 'e+dd'."""
 
 
-def _powers() -> tuple[Floats, Floats]:
-    """10^k as sums of two floats, k from `_LOWEST` on."""
+def powers_of_ten(lowest: int, highest: int) -> tuple[Floats, Floats]:
+    """10^k as sums of two floats, k from `lowest` to `highest`."""
     with localcontext() as context:
         context.prec = 120
-        exact = [Decimal(10) ** k for k in range(_LOWEST, 16 + _REACH + 3)]
+        exact = [Decimal(10) ** k for k in range(lowest, highest + 1)]
         high = [float(power) for power in exact]
         low = [float(power - Decimal(part)) for power, part in zip(exact, high, strict=True)]
     return np.array(high), np.array(low)
@@ -52,7 +52,7 @@ def _words(texts: list[str]) -> NDArray[np.uint32]:
     return np.frombuffer("".join(texts).encode(), dtype="<u4")
 
 
-_HIGH, _LOW = _powers()
+_HIGH, _LOW = powers_of_ten(_LOWEST, 16 + _REACH + 2)
 _GROUPS = _words([f"{number:04d}" for number in range(10000)])
 _EXPONENTS = _words([f"e{exponent:+03d}" for exponent in range(-_REACH - 2, _REACH + 3)])
 
@@ -82,8 +82,8 @@ def _scaled(size: Floats, exponent: Integers) -> Integers:
     which = 16 - exponent - _LOWEST
     high = _HIGH[which]
     product = size * high
-    size_high, size_low = _halves(size)
-    power_high, power_low = _halves(high)
+    size_high, size_low = halves(size)
+    power_high, power_low = halves(high)
     error = ((size_high * power_high - product) + size_high * power_low + size_low * power_high) + (
         size_low * power_low
     )
@@ -91,7 +91,7 @@ def _scaled(size: Floats, exponent: Integers) -> Integers:
     return product.astype(np.int64) + np.rint(error + size * _LOW[which]).astype(np.int64)
 
 
-def _halves(values: Floats) -> tuple[Floats, Floats]:
+def halves(values: Floats) -> tuple[Floats, Floats]:
     """Two floats of half the bits each whose sum is the value (Veltkamp)."""
     spread = values * _SPLITTER
     high = spread - (spread - values)

@@ -3,34 +3,34 @@
 from __future__ import annotations
 
 from itertools import count
-from typing import NamedTuple
 
 import numpy as np
 
 from irlx.streams.irdata.codes import SAMPLE
 from irlx.streams.irdata.digits import FIELD, fill_fields
+from irlx.streams.irdata.numbers import counts_of, floats_of
 from irlx.streams.irdata.record import LINE_END, RecordError
 from irlx.streams.joint_stream import Floats, Integers
+from irlx.streams.scan import RowBatch
 
 MARK = f", {SAMPLE}, ".encode()
 """What makes a line a sample: no other record has this after its number."""
 
 _INTEGER_COLUMNS = 4
-_ALLOWED = b"0123456789+-.e, "
+_ALLOWED = b"0123456789+-.e "
 _LARGEST = 2**53
-_END = LINE_END
+_LONGEST_NUMBER = 24
+_COMMA, _BLANK, _SEMICOLON, _NEWLINE = b", ;\n"
+# Few lines are read sooner one by one than by operations on arrays.
+_MANY = 32
 
 
-class SampleBatch(NamedTuple):
-    """Consecutive rows: ticks (N,), q (N, n), block (N,), tool (N, 7)."""
-
-    ticks: Integers
-    q: Floats
-    block: Integers
-    tool: Floats
+def is_sample(line: bytes) -> bool:
+    """Whether a line is that of a sample."""
+    return line.startswith(MARK, line.find(b",", 1, _LONGEST_NUMBER))
 
 
-def samples_text(first: int, batch: SampleBatch) -> bytes:
+def samples_text(first: int, batch: RowBatch) -> bytes:
     """Lines of the rows of a batch, numbered from `first`: tick, block id, joint values, tool pose."""
     values = np.concatenate([batch.q, batch.tool], axis=1)
     table = np.empty(
@@ -43,17 +43,61 @@ def samples_text(first: int, batch: SampleBatch) -> bytes:
     return b"".join([b"%d, 900, %d, %d%b" % head for head in heads])
 
 
-def parse_samples(lines: list[bytes], first: int, joints: int) -> SampleBatch:
+def parse_samples(lines: list[bytes], first: int, joints: int) -> RowBatch:
     """Batch of sample lines that must be numbered from `first`; raises RecordError.
 
     The message does not say which line is wrong: parse them one by one to find out.
     """
     columns = _INTEGER_COLUMNS + joints + 7
+    heads, values = _numbers(lines, columns)
+    if not np.isfinite(values).all():
+        raise RecordError("a value is not finite")
+    if not np.array_equal(heads[:, 0], np.arange(first, first + len(lines))):
+        raise RecordError(f"record number {first} is due here")
+    q, tool = values[:, :joints].copy(), values[:, joints:].copy()
+    return RowBatch(heads[:, 2].copy(), q, heads[:, 3].copy(), tool)
+
+
+def _numbers(lines: list[bytes], columns: int) -> tuple[Integers, Floats]:
+    """The counts (N, 4) at the beginning of each line and the values behind them; raises RecordError."""
+    if len(lines) >= _MANY:
+        try:
+            return _many_numbers(lines, columns)
+        except ValueError:
+            # The reading line by line allows more forms of numbers, and has the words for what is wrong.
+            pass
+    return _few_numbers(lines, columns)
+
+
+def _many_numbers(lines: list[bytes], columns: int) -> tuple[Integers, Floats]:
+    """Numbers of lines as `samples_text` makes them; raises ValueError for others."""
+    text = b"".join(lines)
+    if not text.endswith(b"\n"):
+        text += b"\n"
+    bytes_ = np.frombuffer(text, dtype=np.uint8)
+    separators, breaks = np.flatnonzero(bytes_ == _COMMA), np.flatnonzero(bytes_ == _NEWLINE)
+    if len(breaks) != len(lines) or len(separators) != len(lines) * (columns - 1):
+        raise ValueError("a line has another number of fields")
+    commas = separators.reshape(len(lines), columns - 1)
+    begins = np.concatenate(([0], breaks[:-1] + 1))
+    starts = np.column_stack([begins, commas + 2])
+    ends = np.column_stack([commas, breaks - 2])
+    in_lines = (starts[:, 0] <= commas[:, 0]) & (commas[:, -1] < breaks)
+    blanks = (bytes_[commas + 1] == _BLANK).all() and (bytes_[breaks - 2] == _BLANK).all()
+    if not (in_lines.all() and blanks and (bytes_[breaks - 1] == _SEMICOLON).all()):
+        raise ValueError("a line has another form")
+    split = _INTEGER_COLUMNS
+    heads = counts_of(text, starts[:, :split], ends[:, :split])
+    return heads, floats_of(text, starts[:, split:], ends[:, split:], _ALLOWED)
+
+
+def _few_numbers(lines: list[bytes], columns: int) -> tuple[Integers, Floats]:
     for line in lines:
         if line.count(b", ") != columns - 1 or not line.endswith((b" ;\n", b" ;")):
+            joints = columns - _INTEGER_COLUMNS - 7
             raise RecordError(f"a sample of {joints} joints has {columns} fields and ends with ' ;'")
-    text = b", ".join([line.rstrip(_END) for line in lines])
-    if text.translate(None, _ALLOWED):
+    text = b", ".join([line.removesuffix(b"\n").removesuffix(b" ;") for line in lines])
+    if text.translate(None, _ALLOWED + b","):
         raise RecordError("a sample holds numbers only")
     try:
         table = np.array(list(map(float, text.split(b", ")))).reshape(len(lines), columns)
@@ -64,7 +108,4 @@ def parse_samples(lines: list[bytes], first: int, joints: int) -> SampleBatch:
         raise RecordError("a value is not finite")
     if not ((heads >= 0) & (heads < _LARGEST) & (heads == np.floor(heads))).all():
         raise RecordError("record number, code, tick and block id are counts")
-    whole = heads.astype(np.int64)
-    if not np.array_equal(whole[:, 0], np.arange(first, first + len(lines))):
-        raise RecordError(f"record number {first} is due here")
-    return SampleBatch(whole[:, 2], values[:, :joints].copy(), whole[:, 3], values[:, joints:].copy())
+    return heads.astype(np.int64), values

@@ -15,8 +15,9 @@ from irlx.streams.irdata.block import block_operands
 from irlx.streams.irdata.codes import END
 from irlx.streams.irdata.header import header_records
 from irlx.streams.irdata.record import Value, record_text
-from irlx.streams.irdata.samples import SampleBatch, samples_text
+from irlx.streams.irdata.samples import samples_text
 from irlx.streams.joint_stream import BlockRecord, Floats, Integers, StreamHeader
+from irlx.streams.scan import RowBatch
 
 _ROWS = 1024
 
@@ -58,7 +59,7 @@ class IrdataWriter:
         self._check(ticks, q, block, tool)
         for start in range(0, len(ticks), _ROWS):
             part = slice(start, start + _ROWS)
-            batch = SampleBatch(ticks[part], q[part], block[part], tool[part])
+            batch = RowBatch(ticks[part], q[part], block[part], tool[part])
             self._write(samples_text(self._number, batch))
             self._number += len(batch.ticks)
         self._samples += len(ticks)

@@ -1,0 +1,111 @@
+"""Checks of what a stream says of its robot, and of the times, rates and poses that it states itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from irlx.promises import TOOL_ORIENTATION, TOOL_POSITION, rounding_allowance
+from irlx.robot.description import RobotDescription
+from irlx.robot.limits import JointLimits
+from irlx.streams.joint_stream import StreamHeader
+from irlx.verifier.evidence import Evidence
+from irlx.verifier.report import FAILED, NOT_CHECKED, OK, Check
+from irlx.verifier.rotations import angle_between, from_quaternion
+from irlx.verifier.rows import Rows
+
+
+@dataclass(frozen=True)
+class Reference:
+    """What a stream is judged by: a robot, and its own limits in the cell (None where no cell is given)."""
+
+    robot: RobotDescription
+    limits: JointLimits | None = None
+
+
+def check_robot(header: StreamHeader, reference: Reference | None) -> Check:
+    """The stream was made for this robot: same joints, units, tool frame, geometry."""
+    if reference is None:
+        return Check("robot", NOT_CHECKED, detail="no robot is known")
+    robot = reference.robot
+    units = tuple("m" if joint.is_prismatic else "rad" for joint in robot.axes)
+    for what, found, due in (
+        ("joints", ", ".join(header.joint_names), ", ".join(robot.joint_names)),
+        ("units", ", ".join(header.joint_units), ", ".join(units)),
+        ("tool frame", header.tip, robot.tip),
+        ("fingerprint", _short(header.robot_fingerprint), _short(robot.fingerprint)),
+    ):
+        if found != due:
+            return Check("robot", FAILED, detail=f"{what} in the stream: {found}; of the robot: {due}")
+    return Check("robot", OK)
+
+
+def _short(fingerprint: str) -> str:
+    return f"{fingerprint[:16]}.." if len(fingerprint) > 16 else fingerprint
+
+
+def check_robot_limits(header: StreamHeader, reference: Reference | None) -> Check:
+    """The limits that the stream gives as the robot's own are those of the cell."""
+    if reference is None or reference.limits is None:
+        return Check("robot limits", NOT_CHECKED, detail="no cell is given")
+    for kind in ("position", "speed", "acceleration"):
+        sides = zip(header.limits.pair(kind), reference.limits.pair(kind), ("least", "greatest"), strict=True)
+        for found, due, side in sides:
+            other = np.flatnonzero(found != due)
+            if other.size:
+                joint = int(other[0])
+                detail = (
+                    f"{side} {kind} of {header.joint_names[joint]} in the stream: {found[joint]:.10g}; "
+                    f"in the cell: {due[joint]:.10g}"
+                )
+                return Check("robot limits", FAILED, detail=detail)
+    return Check("robot limits", OK)
+
+
+class ToolChecks:
+    """The recorded tool pose is the one that the joint values give."""
+
+    def __init__(self, evidence: Evidence) -> None:
+        self._position = evidence.tally("tool position", "m")
+        self._orientation = evidence.tally("tool orientation", "rad")
+
+    def take(self, rows: Rows) -> None:
+        """Add a portion."""
+        apart = np.linalg.norm(rows.tool[:, :3] - rows.positions[1:], axis=1)
+        self._position.add(rows.rows, apart, TOOL_POSITION)
+        turned = angle_between(from_quaternion(rows.tool[:, 3:]), rows.rotations[1:])
+        self._orientation.add(rows.rows, turned, TOOL_ORIENTATION)
+
+    def checks(self) -> list[Check]:
+        """Tool position and orientation."""
+        return [self._position.check(), self._orientation.check()]
+
+
+class RateChecks:
+    """Times and rates that a file states beside the joint values are those that follow from these."""
+
+    def __init__(self, evidence: Evidence) -> None:
+        header = evidence.outline.header
+        self._tick_ns = header.tick_ns
+        self._tally = evidence.tally("written rates", "rad/s|m/s")
+        largest = np.array([evidence.outline.largest])
+        self._allowance = rounding_allowance(largest, header.dt)
+
+    def take(self, rows: Rows) -> None:
+        """Add a portion."""
+        if rows.rates is None:
+            return
+        due = rows.rows * self._tick_ns / 1e9
+        off, allowed = np.abs(rows.rates.t - due), np.spacing(np.abs(due))
+        self._tally.add(rows.rows, off, allowed, rank=off / allowed, unit="s")
+        for stated, own, allowance, unit in (
+            (rows.rates.qd, rows.qd, self._allowance[0], ""),
+            (rows.rates.qdd, rows.qdd, self._allowance[1], "per s2"),
+        ):
+            off = np.abs(stated - own)
+            self._tally.add(rows.rows, off, allowance, rank=off / allowance, unit=unit)
+
+    def checks(self) -> list[Check]:
+        """Written rates."""
+        return [self._tally.check()]

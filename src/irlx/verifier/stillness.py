@@ -1,0 +1,79 @@
+"""Checks of what must not move: the last row of every move, and frozen joints; both bit by bit."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irlx.blocks import FreezeBlock
+from irlx.streams.joint_stream import Floats
+from irlx.verifier.evidence import Evidence
+from irlx.verifier.report import Check
+from irlx.verifier.rows import Rows
+
+
+class StopChecks:
+    """The last row of every move repeats the row before it: the robot stands, with a tick to show it."""
+
+    def __init__(self, evidence: Evidence) -> None:
+        self._outline = evidence.outline
+        self._tally = evidence.tally("stops", "rad|m")
+
+    def take(self, rows: Rows) -> None:
+        """Add a portion."""
+        outline = self._outline
+        for stretch in rows.stretches:
+            last = int(stretch.rows[-1])
+            unfinished = last == outline.rows - 1 and not outline.complete
+            if not stretch.ends or last == 0 or unfinished:
+                continue
+            row = stretch.part.stop
+            pair = rows.postures[row - 1 : row + 1]
+            change = np.abs(pair[1:] - pair[:1])
+            offends = _other_bits(pair[1:], pair[:1])
+            self._tally.add(np.array([last]), change, 0.0, offends, np.where(offends, change, -np.inf))
+
+    def checks(self) -> list[Check]:
+        """Stops."""
+        return [self._tally.check()]
+
+
+class FrozenChecks:
+    """Frozen joints keep the bits of the value they had when they were frozen."""
+
+    def __init__(self, evidence: Evidence) -> None:
+        outline = evidence.outline
+        self._tally = evidence.tally("frozen joints", "rad|m")
+        blocks = [(record.tick, record.block) for record in outline.records]
+        frozen = [(tick, block.joints) for tick, block in blocks if isinstance(block, FreezeBlock)]
+        ends = [*(tick for tick, _ in frozen[1:]), outline.rows - 1][: len(frozen)]
+        self._spans = [
+            (tick, end, np.array(joints, dtype=np.int64) - 1, evidence.posture(tick))
+            for (tick, joints), end in zip(frozen, ends, strict=True)
+            if joints and end > tick
+        ]
+
+    def take(self, rows: Rows) -> None:
+        """Add a portion."""
+        for start, end, columns, held in self._spans:
+            first, last = max(start + 1, rows.first), min(end, rows.first + len(rows) - 1)
+            if first > last:
+                continue
+            q = rows.q[first - rows.first : last - rows.first + 1]
+            frozen = np.zeros(q.shape[1], dtype=np.bool_)
+            frozen[columns] = True
+            offends = _other_bits(q, np.broadcast_to(held, q.shape)) & frozen
+            change = np.where(frozen, np.abs(q - held), 0.0)
+            self._tally.add(
+                np.arange(first, last + 1), change, 0.0, offends, np.where(offends, change, -np.inf)
+            )
+
+    def checks(self) -> list[Check]:
+        """Frozen joints."""
+        return [self._tally.check()]
+
+
+def _other_bits(first: Floats, second: Floats) -> NDArray[np.bool_]:
+    """Where two arrays differ in any bit; unlike ``!=`` it tells -0.0 from 0.0."""
+    one, other = (np.ascontiguousarray(array).view(np.int64) for array in (first, second))
+    return np.asarray(one != other)

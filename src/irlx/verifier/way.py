@@ -1,0 +1,69 @@
+"""What a recorded move asks of the tool: its way from the pose it starts at, its goal, its fastest rates."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from irlx.blocks import ArcCourse, MoveKind
+from irlx.verifier.arcs import ArcWay, arc_shape
+from irlx.verifier.evidence import Evidence, Pose
+from irlx.verifier.moves import MoveRows
+from irlx.verifier.paths import LineWay
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """One move, from where it starts.
+
+    `way` is None for a PTP, for points that make no circle, and where targets cannot be placed; then
+    `goal` is None too. `speed` bounds the tool's position, m/s; `flatness` is 1/radius of an arc, in 1/m.
+    """
+
+    move: MoveRows
+    way: LineWay | ArcWay | None
+    goal: Pose | None
+    flatness: float = 0.0
+
+    @property
+    def speed(self) -> float:
+        """Fastest programmed speed of the tool, m/s: on an arc ACC bounds the normal acceleration too."""
+        law = self.move.block.law
+        return min(law.speed, float(np.sqrt(law.acc / self.flatness))) if self.flatness > 0.0 else law.speed
+
+    def acceleration(self, length: float, by_angle: bool) -> float:
+        """Largest programmed acceleration along a way of this length: m/s2; rad/s2 where the angle leads."""
+        law = self.move.block.law
+        if by_angle:
+            return law.acc_ori
+        if isinstance(self.way, LineWay) and self.way.angle > 0.0:
+            return min(law.acc, law.acc_ori * length / self.way.angle)
+        return law.acc
+
+
+def course_of(evidence: Evidence, move: MoveRows, start: Pose) -> Course:
+    """The course of a move that starts at a pose of the tool."""
+    target = evidence.target_pose(move.block.target, start)
+    if target is None:
+        return Course(move, None, None)
+    if move.block.kind is MoveKind.PTP:
+        return Course(move, None, target)
+    course = move.block.course
+    if course is None:
+        return Course(move, LineWay(start, target), target)
+    return _arc(evidence, move, course, start, target)
+
+
+def _arc(evidence: Evidence, move: MoveRows, course: ArcCourse, start: Pose, target: Pose) -> Course:
+    via = evidence.target_pose(course.via, start)
+    if via is None:
+        return Course(move, None, None)
+    shape = arc_shape(start[0], via[0], target[0], course.angle)
+    if shape is None:
+        return Course(move, None, target)
+    goal = target if course.angle is None else (shape.end, target[1])
+    found = Course(move, None, goal, shape.flatness)
+    most_step = found.speed * shape.flatness * evidence.outline.header.dt
+    way = ArcWay(shape, course, (start[1], via[1], goal[1]), most_step)
+    return Course(move, way, goal, shape.flatness)
