@@ -367,3 +367,16 @@ def test_memory_does_not_grow_with_the_file(ending: str, gantry_kit, tmp_path: P
     # Rows of q and tool alone take 1.1 and 4.5 MB, as text 4 and 16 MB.
     assert peaks[1] < peaks[0] + 1_000_000
     assert peaks[1] < 16_000_000
+
+
+@pytest.mark.parametrize("names", [["a"], [], list("abcdefg")], ids=["one", "none", "others"])
+def test_joint_names_beside_other_ones_in_the_header(names: list[str], good, tmp_path: Path) -> None:
+    path = tmp_path / "a.npz"
+    write_stream(good, path)
+    with np.load(path) as file:
+        arrays = {**file, "joint_names": np.array(names, dtype=np.str_)}
+    np.savez(path, **arrays)
+    with pytest.raises(StreamError) as error:
+        read_stream(path)
+    assert error.value.reason.code == "IRL701"
+    assert "joint_names" in error.value.reason.message

@@ -75,7 +75,10 @@ def _archive_items(path: Path, handle: IO[bytes]) -> Iterator[ScanItem]:
 
 def _items(path: Path, archive: zipfile.ZipFile, members: ExitStack) -> Iterator[ScanItem]:
     header, records, said, complete = _meta(archive)
-    _member(archive, "joint_names")
+    names = np.asarray(_member(archive, "joint_names")).ravel().tolist()
+    # Numpy's texts lose zero characters at their end.
+    if names != [name.rstrip("\0") for name in header.joint_names]:
+        raise PlainFormError("header.joint_names: those of the member 'joint_names' are others")
     arrays = {
         key: _Array(key, members.enter_context(archive.open(f"{key}.npy")))
         for key in ("t", "q", "qd", "qdd", "tool", "block")

@@ -56,8 +56,8 @@ def check_robot_limits(header: StreamHeader, reference: Reference | None) -> Che
             if other.size:
                 joint = int(other[0])
                 detail = (
-                    f"{side} {kind} of {header.joint_names[joint]} in the stream: {found[joint]:.10g}; "
-                    f"in the cell: {due[joint]:.10g}"
+                    f"{side} {kind} of {header.joint_names[joint]} in the stream: {found[joint]}; "
+                    f"in the cell: {due[joint]}"
                 )
                 return Check("robot limits", FAILED, detail=detail)
     return Check("robot limits", OK)
