@@ -26,6 +26,10 @@ along the path may be shorter than 0 by this, speeds of the tool exceed by 2 PAT
 PROGRAM_EXCESS = 1e-9
 """Largest relative excess of a programmed speed or acceleration, of the tool or a PTP's joints."""
 
+TICK_SHARE = 1e-6
+"""Part of a tick by which a move may be shorter than its TIME: moves take whole ticks, and this much more
+than a whole number of them does not begin another."""
+
 # ---- A limit is a promise
 
 LIMIT_EXCESS = 1e-9
@@ -47,6 +51,10 @@ def rounding_allowance(q: NDArray[np.float64], dt: float) -> tuple[float, float]
 
 CLOSURE = 1e-6
 """Largest difference per joint between the postures at the ends of a closed cyclic path, rad or m."""
+
+RETURN = 1e-8
+"""A target this near the pose of CYCLICSTART, m and rad, is a return to it: further off, the posture may
+have to differ by more than `CLOSURE`."""
 
 TOUCH = 1e-9
 """A bound this near, relative to max(1, |value|), is active: it may have kept a posture from closing."""

@@ -58,7 +58,7 @@ def verify(
     of_program = None if text is None else given_cell or _cell_of(text)
     reference = None
     if given_cell is not None:
-        reference = Reference(given_cell.robot, given_cell.limits)
+        reference = Reference(given_cell.robot, given_cell.limits, given_cell.start)
     elif header is not None:
         reference = _looked_up(header, beside, of_program)
     compare = None if text is None else partial(_program_check, text, of_program)
@@ -88,8 +88,8 @@ def _looked_up(header: StreamHeader, beside: Path, of_program: Cell | None) -> R
     """
     for cell in _cells(header, beside, of_program):
         if _is_of(header, cell.robot):
-            limits = cell.limits if _same_limits(header, cell) else None
-            return Reference(cell.robot, limits)
+            same = _same_limits(header, cell)
+            return Reference(cell.robot, cell.limits, cell.start) if same else Reference(cell.robot)
     if header.robot_model in robot_names():
         from irlx.cell.model import load_robot
 

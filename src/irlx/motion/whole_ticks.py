@@ -7,11 +7,10 @@ from typing import Any
 
 from irlx.diagnostics import Place, report
 from irlx.motion.errors import MotionError
+from irlx.promises import TICK_SHARE
 
 MOST_TICKS = 2_000_000
 """Most ticks of one move: beyond, its rows would not fit a machine's memory, and nobody means it."""
-
-_FREE_EXCESS = 1e-6
 
 
 def whole_ticks(duration: float, dt: float) -> int:
@@ -19,7 +18,7 @@ def whole_ticks(duration: float, dt: float) -> int:
 
     An excess below 1e-6 of a tick is rounding of the duration and takes no further tick.
     """
-    return max(1, ceil(duration / dt - _FREE_EXCESS))
+    return max(1, ceil(duration / dt - TICK_SHARE))
 
 
 def ticks_of_move(duration: float, dt: float, place: Place) -> int:

@@ -56,6 +56,7 @@ CHECKS = (
     "path progress",
     "programmed speed",
     "programmed acceleration",
+    "programmed time",
     "reconfiguration position",
     "reconfiguration orientation",
     "cyclic closure",
@@ -145,7 +146,8 @@ def _judged(
 ) -> list[Check]:
     """Checks of blocks and rows, the stream being whole enough for them."""
     robot = reference.robot if reference is not None and of_robot.status == OK else None
-    evidence = Evidence(outline, robot)
+    start = None if robot is None or reference is None else reference.start
+    evidence = Evidence(outline, robot, start)
     of_blocks = check_blocks(outline)
     no_blocks = "the check 'blocks' failed" if of_blocks.status == FAILED else of_blocks.detail
     no_robot = of_robot.detail if of_robot.status == NOT_CHECKED else "the check 'robot' failed"

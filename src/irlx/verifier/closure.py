@@ -16,11 +16,13 @@ from irlx.blocks import (
     PoseTarget,
     ReconfigureBlock,
 )
-from irlx.promises import CLOSURE, PATH_ORIENTATION, PATH_POSITION, TOUCH
+from irlx.promises import CLOSURE, RETURN, TOUCH
 from irlx.verifier.evidence import Evidence, Pose
+from irlx.verifier.moves import MoveRows
 from irlx.verifier.report import Check
 from irlx.verifier.rotations import angle_between
 from irlx.verifier.rows import Rows, Stretch
+from irlx.verifier.way import course_of
 
 _LED_AWAY = (
     "a limit was active, or a RECONFIGURATION, a frozen joint or joint values led away from the posture"
@@ -31,6 +33,7 @@ _LED_AWAY = (
 class _Return:
     """A move that may come back to the pose of CYCLICSTART, whose row is `start`."""
 
+    move: MoveRows
     start: int
     led_away: bool
 
@@ -49,6 +52,7 @@ class ClosureChecks:
         self._returns = _possible_returns(evidence)
         self._starts = {found.start for found in self._returns.values()}
         self._poses: dict[int, Pose] = {}
+        self._at_start: Pose | None = None
         self._count, self._judged = 0, 0
         self._active_last, self._moved_before = False, False
 
@@ -63,9 +67,11 @@ class ClosureChecks:
             if found is None:
                 continue
             self._watch_limits(rows, stretch)
+            if stretch.begins or self._at_start is None:
+                before = stretch.before.start
+                self._at_start = rows.positions[before].copy(), rows.rotations[before].copy()
             if stretch.ends:
-                last = stretch.after.stop - 1
-                self._end(int(stretch.rows[-1]), found, (rows.positions[last], rows.rotations[last]))
+                self._end(int(stretch.rows[-1]), found, self._at_start)
 
     def _watch_limits(self, rows: Rows, stretch: Stretch) -> None:
         """Keep whether a limit is reached in the last row that moves, or in the one after."""
@@ -92,10 +98,12 @@ class ClosureChecks:
             active |= ((here >= upper - reach) | (here <= lower + reach)).any(axis=1)
         return active
 
-    def _end(self, row: int, found: _Return, pose: Pose) -> None:
-        if not _same_pose(pose, self._poses[found.start]):
-            return
+    def _end(self, row: int, found: _Return, before: Pose) -> None:
+        """Judge the end of a move that stood at the pose `before`, if its goal is that of CYCLICSTART."""
         evidence = self._evidence
+        goal = course_of(evidence, found.move, before).goal
+        if goal is None or not _same_pose(goal, self._poses[found.start]):
+            return
         difference = np.abs(evidence.posture(row) - evidence.posture(found.start))[None]
         judged = not (found.led_away or self._active_last)
         self._count += 1
@@ -127,7 +135,7 @@ def _possible_returns(evidence: Evidence) -> dict[int, _Return]:
             continue
         move = moves[block.id]
         if isinstance(block.target, PoseTarget) and move.finished and move.last > move.start:
-            found[block.id] = _Return(start, led_away)
+            found[block.id] = _Return(move, start, led_away)
     return found
 
 
@@ -142,5 +150,5 @@ def _reconfigures(block: Block) -> bool:
 
 
 def _same_pose(one: Pose, other: Pose) -> bool:
-    near = float(np.linalg.norm(one[0] - other[0])) <= PATH_POSITION
-    return near and float(angle_between(one[1], other[1])) <= PATH_ORIENTATION
+    near = float(np.linalg.norm(one[0] - other[0])) <= RETURN
+    return near and float(angle_between(one[1], other[1])) <= RETURN

@@ -28,11 +28,13 @@ BASE_FRAME = "R_BASE"
 class Evidence:
     """The outline of a stream with what follows from it, computed on first use.
 
-    `robot` is None where none is known or where it is not the stream's robot.
+    `robot` is None where none is known or where it is not the stream's robot; `start` (n,) is the posture in
+    which its cell has it begin, None where no cell is given.
     """
 
     outline: Outline
     robot: RobotDescription | None
+    start: Floats | None = None
 
     @cached_property
     def has_blocks(self) -> bool:

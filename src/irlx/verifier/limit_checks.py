@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.promises import LIMIT_EXCESS, rounding_allowance
+from irlx.promises import LIMIT_EXCESS, SAME_NUMBER, rounding_allowance
 from irlx.streams.joint_stream import Floats, Integers
 from irlx.verifier.evidence import Evidence
 from irlx.verifier.report import Check
@@ -16,17 +16,29 @@ _UNITS = {"position": "rad|m", "speed": "rad/s|m/s", "acceleration": "rad/s2|m/s
 
 
 class StartCheck:
-    """The start posture lies inside the robot's own position limits."""
+    """The start posture lies inside the robot's own position limits and is that of the cell, if any."""
 
     def __init__(self, evidence: Evidence) -> None:
         self._tally = evidence.tally("start", "rad|m")
         self._own = evidence.outline.header.limits.pair("position")
+        self._due = evidence.start
 
     def take(self, rows: Rows) -> None:
         """Add a portion."""
         if rows.first == 0:
             lower, upper = self._own
             _add_positions(self._tally, np.arange(1), rows.q[:1], lower[None], upper[None])
+            self._compare(rows.q[:1])
+
+    def _compare(self, q: Floats) -> None:
+        if self._due is None:
+            return
+        due = self._due[None]
+        elsewhere = ~(np.abs(q - due) <= SAME_NUMBER * np.maximum(1.0, np.abs(due)))
+        if elsewhere.any():
+            self._tally.detail = "the cell has the robot start elsewhere"
+            rank = np.where(elsewhere, np.inf, -np.inf)
+            self._tally.add(np.arange(1), q, due, elsewhere, rank)
 
     def checks(self) -> list[Check]:
         """Start."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -183,6 +183,7 @@ def check_ticks(outline: Outline) -> Check:
         return Check("ticks", FAILED, detail=outline.damage.message)
     if found is None:
         return Check("ticks", OK)
+    found = replace(found, line=outline.lines.get(found.block))
     detail = f"tick {found.value:.0f} stands where tick {found.allowed:.0f} is due"
     return Check("ticks", FAILED, worst=found, first=found, detail=detail)
 

@@ -9,7 +9,7 @@ import numpy as np
 from irlx.promises import TOOL_ORIENTATION, TOOL_POSITION, rounding_allowance
 from irlx.robot.description import RobotDescription
 from irlx.robot.limits import JointLimits
-from irlx.streams.joint_stream import StreamHeader
+from irlx.streams.joint_stream import Floats, StreamHeader
 from irlx.verifier.evidence import Evidence
 from irlx.verifier.report import FAILED, NOT_CHECKED, OK, Check
 from irlx.verifier.rotations import angle_between, from_quaternion
@@ -18,10 +18,12 @@ from irlx.verifier.rows import Rows
 
 @dataclass(frozen=True)
 class Reference:
-    """What a stream is judged by: a robot, and its own limits in the cell (None where no cell is given)."""
+    """What a stream is judged by: a robot, and of its cell the robot's own limits and the start posture (n,),
+    rad or m; None where no cell is given."""
 
     robot: RobotDescription
     limits: JointLimits | None = None
+    start: Floats | None = None
 
 
 def check_robot(header: StreamHeader, reference: Reference | None) -> Check:
@@ -34,15 +36,11 @@ def check_robot(header: StreamHeader, reference: Reference | None) -> Check:
         ("joints", ", ".join(header.joint_names), ", ".join(robot.joint_names)),
         ("units", ", ".join(header.joint_units), ", ".join(units)),
         ("tool frame", header.tip, robot.tip),
-        ("fingerprint", _short(header.robot_fingerprint), _short(robot.fingerprint)),
+        ("fingerprint", header.robot_fingerprint, robot.fingerprint),
     ):
         if found != due:
             return Check("robot", FAILED, detail=f"{what} in the stream: {found}; of the robot: {due}")
     return Check("robot", OK)
-
-
-def _short(fingerprint: str) -> str:
-    return f"{fingerprint[:16]}.." if len(fingerprint) > 16 else fingerprint
 
 
 def check_robot_limits(header: StreamHeader, reference: Reference | None) -> Check:

@@ -9,11 +9,12 @@ from irlx.blocks import FreezeBlock
 from irlx.streams.joint_stream import Floats
 from irlx.verifier.evidence import Evidence
 from irlx.verifier.report import Check
-from irlx.verifier.rows import Rows
+from irlx.verifier.rows import Rows, Stretch
 
 
 class StopChecks:
-    """The last row of every move repeats the row before it: the robot stands, with a tick to show it."""
+    """The last row of every motion repeats the row before it: the robot stands, with a tick to show it. Rows
+    before the first motion all repeat the start posture."""
 
     def __init__(self, evidence: Evidence) -> None:
         self._outline = evidence.outline
@@ -25,13 +26,17 @@ class StopChecks:
         for stretch in rows.stretches:
             last = int(stretch.rows[-1])
             unfinished = last == outline.rows - 1 and not outline.complete
-            if not stretch.ends or last == 0 or unfinished:
-                continue
-            row = stretch.part.stop
-            pair = rows.postures[row - 1 : row + 1]
-            change = np.abs(pair[1:] - pair[:1])
-            offends = _other_bits(pair[1:], pair[:1])
-            self._tally.add(np.array([last]), change, 0.0, offends, np.where(offends, change, -np.inf))
+            if stretch.block == 0:
+                self._add(rows, stretch, 0)
+            elif stretch.ends and not unfinished:
+                self._add(rows, stretch, len(stretch.rows) - 1)
+
+    def _add(self, rows: Rows, stretch: Stretch, first: int) -> None:
+        """Compare the rows of a stretch from its row `first` on each with the row before."""
+        here, before = (rows.postures[part][first:] for part in (stretch.after, stretch.before))
+        change, offends = np.abs(here - before), _other_bits(here, before)
+        rank = np.where(offends, change, -np.inf)
+        self._tally.add(stretch.rows[first:], change, 0.0, offends, rank)
 
     def checks(self) -> list[Check]:
         """Stops."""

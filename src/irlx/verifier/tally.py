@@ -48,7 +48,7 @@ class Tally:
             self._worst_rank = float(rank.flat[top])
             self._worst = self._finding(rows, value, allowed, top, unit)
         if offends.any():
-            found = self._finding(rows, value, allowed, int(np.argmax(offends)), unit)
+            found = self._finding(rows, value, allowed, _first(offends, rank), unit)
             if self._first is None or found.tick < self._first.tick:
                 self._first = found
 
@@ -84,3 +84,13 @@ class Tally:
         status = OK if self._first is None else FAILED
         worst = self._worst if self._worst is not None else self._first
         return Check(self.name, status, self.unit, worst, self._first, self.detail)
+
+
+def _first(offends: NDArray[np.bool_], rank: Floats) -> int:
+    """Flat index of the first row's worst offence."""
+    first = int(np.argmax(offends))
+    if offends.ndim == 1:
+        return first
+    row, width = first // offends.shape[1], offends.shape[1]
+    worst = np.where(offends[row], rank[row], -np.inf)
+    return row * width + int(np.argmax(worst)) if np.isfinite(worst).any() else first

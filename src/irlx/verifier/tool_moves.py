@@ -5,7 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from irlx.blocks import MoveKind
-from irlx.promises import PATH_ORIENTATION, PATH_POSITION, PATH_STEP, PROGRAM_EXCESS, rounding_allowance
+from irlx.promises import (
+    PATH_ORIENTATION,
+    PATH_POSITION,
+    PATH_STEP,
+    PROGRAM_EXCESS,
+    TICK_SHARE,
+    rounding_allowance,
+)
 from irlx.streams.joint_stream import Floats
 from irlx.verifier.evidence import Evidence, Pose
 from irlx.verifier.moves import MoveRows
@@ -32,8 +39,10 @@ class ToolMoveChecks:
         self._progress = evidence.tally("path progress", "m|rad")
         self._speed = evidence.tally("programmed speed", "m/s|rad/s")
         self._acceleration = evidence.tally("programmed acceleration", "m/s2|rad/s2")
+        self._time = evidence.tally("programmed time", "s")
         self._course: Course | None = None
         self._along = np.zeros(2)
+        self._last_moving = 0
         self._skipped: set[int] = set()
 
     def take(self, rows: Rows) -> None:
@@ -53,6 +62,7 @@ class ToolMoveChecks:
             self._course = course_of(self._evidence, move, (rows.positions[before], rows.rotations[before]))
             self._along = np.zeros(2)
         course = self._course
+        self._add_time(rows, stretch, move)
         if move.block.kind is MoveKind.PTP:
             self._add_joint_rates(rows, stretch, move)
         elif course.way is not None:
@@ -114,6 +124,17 @@ class ToolMoveChecks:
             high = bound * (1.0 + PROGRAM_EXCESS) + 2.0 * PATH_STEP / self._dt
             self._speed.add(stretch.rows, rates, bound, ~(rates <= high), rates / high, unit)
 
+    def _add_time(self, rows: Rows, stretch: Stretch, move: MoveRows) -> None:
+        """A move with TIME takes at least that, from where it starts to the last row that moves."""
+        due = move.block.law.duration
+        moving = (rows.postures[stretch.after] != rows.postures[stretch.before]).any(axis=1)
+        if moving.any():
+            self._last_moving = int(stretch.rows[np.flatnonzero(moving)[-1]])
+        if due is not None and stretch.ends and move.finished:
+            short = np.array([due - (self._last_moving - move.start) * self._dt])
+            allowed = TICK_SHARE * self._dt
+            self._time.add(stretch.rows[-1:], short, allowed)
+
     def _add_joint_rates(self, rows: Rows, stretch: Stretch, move: MoveRows) -> None:
         """A PTP uses at most its share of every joint's limits, where these are finite."""
         limits, law = self._evidence.limits, move.block.law
@@ -131,9 +152,10 @@ class ToolMoveChecks:
             tally.add(stretch.rows, np.abs(rates), bound, finite & ~(np.abs(rates) <= high), use)
 
     def checks(self) -> list[Check]:
-        """Goals, paths, programmed speed and acceleration."""
+        """Goals, paths, programmed speed, acceleration and time."""
         tallies = (*self._goal, *self._path, self._progress, self._speed, self._acceleration)
         if self._skipped:
             for tally in tallies:
                 tally.detail = f"{len(self._skipped)} moves not checked: {_OTHER_FRAME}"
-        return [tally.check(_UNPLACED if self._skipped else "") for tally in tallies]
+        of_tool = [tally.check(_UNPLACED if self._skipped else "") for tally in tallies]
+        return [*of_tool, self._time.check()]
