@@ -21,11 +21,14 @@ if TYPE_CHECKING:
     from irlx.report.run import Run, RunError, RunInterrupted
     from irlx.streams.error import StreamError
     from irlx.streams.sample import Sample
+    from irlx.transform.criteria.library import register
+    from irlx.transform.measures.measure import Measure as Criterion
     from irlx.verification import verify
     from irlx.verifier.report import Report
 
 _HOMES = {
     "CellError": "irlx.cell.errors",
+    "Criterion": "irlx.transform.measures.measure:Measure",
     "Diagnostic": "irlx.diagnostics",
     "IrlxError": "irlx.diagnostics",
     "Program": "irlx.program",
@@ -38,6 +41,7 @@ _HOMES = {
     "StreamError": "irlx.streams.error",
     "check": "irlx.checking",
     "load": "irlx.program",
+    "register": "irlx.transform.criteria.library",
     "run": "irlx.pipeline",
     "stream": "irlx.pipeline",
     "verify": "irlx.verification",
@@ -46,6 +50,7 @@ _HOMES = {
 
 __all__ = [
     "CellError",
+    "Criterion",
     "Diagnostic",
     "IrlxError",
     "Program",
@@ -59,6 +64,7 @@ __all__ = [
     "__version__",
     "check",
     "load",
+    "register",
     "run",
     "stream",
     "verify",
@@ -69,7 +75,8 @@ def __getattr__(name: str) -> Any:
     home = _HOMES.get(name)
     if home is None:
         raise AttributeError(f"module 'irlx' has no attribute '{name}'")
-    return getattr(import_module(home), name)
+    module, _, attribute = home.partition(":")
+    return getattr(import_module(module), attribute or name)
 
 
 def __dir__() -> list[str]:

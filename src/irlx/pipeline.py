@@ -24,6 +24,7 @@ from irlx.pacing.explanation import explain_tick as explain_row
 from irlx.pacing.pacer import Pacer, PacingSetup
 from irlx.pacing.rows import MotionRows
 from irlx.program import Program, ProgramError, cell_path, load
+from irlx.promises import LONGEST_TICK, SHORTEST_TICK
 from irlx.report.recording import Recording
 from irlx.report.run import Run, RunError, RunInterrupted
 from irlx.robot.kinematics import Kinematics
@@ -35,8 +36,8 @@ PathLike = str | os.PathLike[str]
 Progress = Callable[[Block, float], None]
 """Called after each block with the block and the simulated time so far, s."""
 
-LEAST_TICK_MS = 0.25
-LONGEST_TICK_MS = 1000.0
+LEAST_TICK_MS = SHORTEST_TICK * 1e3
+LONGEST_TICK_MS = LONGEST_TICK * 1e3
 
 
 @dataclass(frozen=True)

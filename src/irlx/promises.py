@@ -23,12 +23,16 @@ PATH_STEP = 1e-9
 along the path may be shorter than 0 by this, speeds of the tool exceed by 2 PATH_STEP/dt, accelerations by
 4 PATH_STEP/dt^2, beside `PROGRAM_EXCESS`."""
 
-PROGRAM_EXCESS = 1e-9
+PROGRAM_EXCESS = 2e-6
 """Largest relative excess of a programmed speed or acceleration, of the tool or a PTP's joints."""
 
 TICK_SHARE = 1e-6
-"""Part of a tick by which a move may be shorter than its TIME: moves take whole ticks, and this much more
-than a whole number of them does not begin another."""
+"""Part of a tick by which a move may be shorter than its TIME, or than SPEED and ACC allow: moves take whole
+ticks, and this much more than a whole number of them does not begin another. `PROGRAM_EXCESS` follows: a move
+of one tick may be this much faster, and accelerate by twice of it."""
+
+SHORTEST_TICK, LONGEST_TICK = 250e-6, 1.0
+"""Least and greatest duration of a tick, s: beyond, rows tell nothing of what a robot does between them."""
 
 # ---- A limit is a promise
 

@@ -9,8 +9,9 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from irlx.blocks import Block, Question
+from irlx.blocks import AskPosture, AskPostureOf, Block
 from irlx.cell.cell import Cell
+from irlx.cell.find import is_file
 from irlx.cell.load import load_cell
 from irlx.cell.named import robot_names
 from irlx.cell.schema import RobotSection
@@ -20,12 +21,11 @@ from irlx.interpreter.interpret import interpret
 from irlx.program import Program, cell_path, load
 from irlx.robot.description import RobotDescription
 from irlx.streams.error import StreamError
-from irlx.streams.formats import scan_stream
+from irlx.streams.formats import format_of, scan_stream
 from irlx.streams.joint_stream import StreamHeader
 from irlx.verifier import Reference, Report, verify_scans
-from irlx.verifier.moves import carries_blocks
 from irlx.verifier.outline import Outline, Scans
-from irlx.verifier.program_blocks import blocks_differ
+from irlx.verifier.program_blocks import Unanswerable, blocks_differ
 from irlx.verifier.report import FAILED, OK, Check
 
 if TYPE_CHECKING:
@@ -50,19 +50,24 @@ def verify(
     text = None if program is None else load(program, cell)
     if isinstance(run_or_file, str | os.PathLike):
         scans: Scans = partial(scan_stream, run_or_file)
-        name, beside, is_file = Path(run_or_file).name, Path(run_or_file).parent, True
+        name, beside, from_file = Path(run_or_file).name, Path(run_or_file).parent, True
+        may_lack_blocks = not format_of(run_or_file).carries_blocks
     else:
         stream = run_or_file.stream
-        scans, name, beside, is_file = stream.scan, stream.header.program_name, Path.cwd(), False
+        scans, name, beside, from_file = stream.scan, stream.header.program_name, Path.cwd(), False
+        may_lack_blocks = False
     header = _header(scans)
     of_program = None if text is None else given_cell or _cell_of(text)
     reference = None
-    if given_cell is not None:
-        reference = Reference(given_cell.robot, given_cell.limits, given_cell.start)
+    strict = given_cell
+    if of_program is not None and header is not None and Path(of_program.file).name == header.cell_name:
+        strict = of_program
+    if strict is not None:
+        reference = Reference(strict.robot, strict.limits, strict.start)
     elif header is not None:
         reference = _looked_up(header, beside, of_program)
     compare = None if text is None else partial(_program_check, text, of_program)
-    return verify_scans(scans, reference, name, compare, is_file)
+    return verify_scans(scans, reference, name, compare, from_file, may_lack_blocks)
 
 
 def _header(scans: Scans) -> StreamHeader | None:
@@ -102,9 +107,12 @@ def _looked_up(header: StreamHeader, beside: Path, of_program: Cell | None) -> R
 def _cells(header: StreamHeader, beside: Path, of_program: Cell | None) -> Iterator[Cell]:
     if of_program is not None:
         yield of_program
-    for folder in (beside, Path.cwd()) if header.cell_name else ():
-        with suppress(IrlxError):
-            yield load_cell(folder / header.cell_name)
+    # A stream is anybody's: only a plain file of that name, here and nowhere else, is looked at.
+    if header.cell_name and Path(header.cell_name).name == header.cell_name:
+        for path in (beside / header.cell_name, Path.cwd() / header.cell_name):
+            with suppress(IrlxError):
+                if is_file(path):
+                    yield load_cell(path)
 
 
 def _is_of(header: StreamHeader, robot: RobotDescription) -> bool:
@@ -123,7 +131,7 @@ def _program_check(program: Program, cell: Cell | None, outline: Outline) -> Che
     findings, unsaid = [], ""
     if program.sha256 != header.program_sha256:
         findings.append(f"the stream was made from {header.program_name} with another text")
-    if not carries_blocks(outline):
+    if not outline.records and outline.ids.any():
         unsaid = "its text only: the stream carries no blocks"
     elif cell is None:
         unsaid = "its text only: no cell to run it in is found"
@@ -144,7 +152,10 @@ def _replayed(program: Program, cell: Cell, outline: Outline) -> Iterator[Block]
         except StopIteration:
             return
         reply = None
-        if isinstance(item, Question):
+        if isinstance(item, AskPostureOf):
+            # Which posture a pose has is for the machine to say, and no stream tells.
+            raise Unanswerable
+        if isinstance(item, AskPosture):
             records = outline.records
             row = records[done].tick if done < len(records) else outline.rows - 1
             reply = outline.posture(row)

@@ -7,6 +7,10 @@ from hypothesis import strategies as st
 from irlx.blocks import (
     ArcCourse,
     Block,
+    CriterionBlock,
+    CriterionChoice,
+    CriterionClause,
+    CriterionParam,
     CyclicBlock,
     FreezeBlock,
     HaltBlock,
@@ -38,12 +42,19 @@ poses = st.builds(
     st.text(),
 )
 targets = poses | st.builds(JointTarget, vectors)
+criteria = st.builds(
+    CriterionChoice,
+    st.text(),
+    numbers,
+    st.lists(st.builds(CriterionParam, st.text(), numbers), max_size=2).map(tuple),
+)
 courses = st.builds(ArcCourse, targets, st.none() | numbers, st.booleans())
 blocks = st.one_of(
     st.builds(HaltBlock, **common),
     st.builds(FreezeBlock, joints=st.lists(st.integers(1, 9)).map(tuple), **common),
     st.builds(CyclicBlock, active=st.booleans(), **common),
     st.builds(LimitSwitchBlock, kind=kinds, range=st.none() | ranges, **common),
+    st.builds(CriterionBlock, name=st.text(), choice=st.none() | criteria, **common),
     st.builds(ReconfigureBlock, target=st.builds(JointTarget, vectors), law=laws, **common),
     st.builds(
         MoveBlock,
@@ -53,6 +64,7 @@ blocks = st.one_of(
         limits=st.lists(st.builds(LimitClause, kinds, ranges, origins), max_size=2).map(tuple),
         course=st.none() | courses,
         reconfiguration=st.none() | st.builds(JointTarget, vectors),
+        criteria=st.lists(st.builds(CriterionClause, criteria, origins), max_size=2).map(tuple),
         **common,
     ),
 )
@@ -100,6 +112,9 @@ GOOD = block_to_plain(
         ({"law": {**GOOD["law"], "speed": 10**400}}, "law.speed"),
         ({"limits": 3}, "limits"),
         ({"limits": [3]}, "limits.1"),
+        ({"criteria": 3}, "criteria"),
+        ({"criteria": [{"choice": {"name": "A"}, "origin": GOOD["origin"]}]}, "criteria.1.choice.weight"),
+        ({"criteria": [{"choice": {"name": "A", "weight": 1.0}}]}, "criteria.1.origin"),
     ],
 )
 def test_wrong_forms_name_the_key(change: dict[str, object], word: str) -> None:
@@ -116,7 +131,7 @@ def test_missing_fields_and_other_things() -> None:
 
 @pytest.mark.req("STR-03")
 def test_what_older_streams_lack_has_its_default() -> None:
-    old = {key: value for key, value in GOOD.items() if key != "course"}
+    old = {key: value for key, value in GOOD.items() if key not in ("course", "criteria")}
     assert block_from_plain(old) == block_from_plain(GOOD)
 
 

@@ -5,6 +5,10 @@ import pytest
 from irlx.blocks import (
     ArcCourse,
     Block,
+    CriterionBlock,
+    CriterionChoice,
+    CriterionClause,
+    CriterionParam,
     CyclicBlock,
     FreezeBlock,
     HaltBlock,
@@ -95,6 +99,35 @@ CASES = [
             reconfiguration=JointTarget((pi, 0.002)),
         ),
         "14 MOVE PTP to joints (180 0) speed_ptp 50 % acc_ptp 100 % WITH RECONFIGURATION (180 2) line 20",
+    ),
+    (
+        CriterionBlock(
+            id=15,
+            origin=AT,
+            name="MANIPULABILITY",
+            choice=CriterionChoice("MANIPULABILITY", 2.0, (CriterionParam("GAIN", 0.5),)),
+        ),
+        "15 CRITERION MANIPULABILITY weight 2 gain 0.5 line 20",
+    ),
+    (
+        CriterionBlock(id=16, origin=AT, name="MANIPULABILITY", choice=None),
+        "16 CRITERIONEND MANIPULABILITY line 20",
+    ),
+    (
+        MoveBlock(
+            id=17,
+            origin=AT,
+            kind=MoveKind.PTP,
+            target=JointTarget((pi, 0.0)),
+            law=LAW,
+            reconfiguration=JointTarget((pi, 0.002)),
+            criteria=(
+                CriterionClause(CriterionChoice("A", 1 / 3), AT),
+                CriterionClause(CriterionChoice("B", 1.0, (CriterionParam("GAIN", -2.0),)), AT),
+            ),
+        ),
+        "17 MOVE PTP to joints (180 0) speed_ptp 50 % acc_ptp 100 % WITH RECONFIGURATION (180 2) "
+        "WITH CRITERION A weight 0.3333333333 WITH CRITERION B weight 1 gain -2 line 20",
     ),
 ]
 

@@ -53,6 +53,12 @@ MESSAGES = {
     "IRL303": (5, 3, "FREEZESTART is switched on while it is on; the new values replace the old"),
     "IRL304": (3, 18, "joint 1 is listed twice"),
     "IRL305": (3, 15, "there is no joint 0"),
+    "IRL306": (4, 69, "parameter 'Gain' of the criterion joint_centring is given twice"),
+    "IRL407": (
+        4,
+        15,
+        "WITH CRITERION manipulability does nothing on a PTP, which goes straight in joint space",
+    ),
     "IRL401": (4, 3, "PATH does not go with PTP"),
     "IRL402": (4, 3, "SPLINE needs PATH"),
     "IRL403": (4, 3, "CIRCLE needs pairs of via point and end point, found 1 target(s)"),

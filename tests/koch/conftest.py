@@ -14,29 +14,6 @@ import irlx
 
 PROGRAMS = Path(__file__).parents[2] / "programs" / "koch"
 
-SPEED_LIMITED = """PROGRAM square_speed;
-SYSTEM SPECIFICATION square;
-CONST
-  ORIENTATION: level := ORIZYX(0, 0, 0), tilted := ORIZYX(0, -85, 0), turned := ORIZYX(85, 0, 0);
-VAR
-  POSE: p1 := ((11500, 1000, 3500), level),
-        p2 := ((9500, 1000, 3500), level),
-        p3 := ((9500, -1000, 3500), tilted),
-        p4 := ((9500, -1000, 3500), turned),
-        p5 := ((11500, -1000, 3500), level);
-  MAIN_JOINT_SPEED_MIN: slowest := (-50, -50, -50, -50, -50, -50, -50, -50, -50, -500, -25);
-  MAIN_JOINT_SPEED_MAX: fastest := (50, 50, 50, 50, 50, 50, 50, 50, 50, 500, 25);
-BEGIN
-  JOINTSPEEDLIMIT slowest, fastest;
-  MOVE LIN p2;
-  MOVE LIN p3;
-  MOVE LIN p4 TIME := 2.5;
-  MOVE LIN p5, p1;
-  JOINTSPEEDLIMITEND;
-ENDPROGRAM;
-"""
-"""Experiment 6.2; the limit ranges of the monograph in deg/s and mm/s."""
-
 AXES = ["+z", "+y", "+y", "+y", "+y", "+y", "-x", "+z", "+y", "slide -z", "+z"]
 OFFSETS = [(0, 0, 1.3), (-0.2, 0, 0.6), (6, 0, -0.3), (-4, 0, -0.3), (4, 0, -0.7), (-4.6, 0, -0.2)]
 OFFSETS += [(0, 0, 0.4), (0, 0, 0.6), (0, 0, 0), (0, 0, 0), (0, 1, 0)]
@@ -94,16 +71,12 @@ def demanded(tick_ms: int) -> tuple[np.ndarray, Rotation]:
 
 
 @pytest.fixture(scope="session")
-def experiment(tmp_path_factory: pytest.TempPathFactory):
-    """`experiment(name, tick_ms)`: the finished run of a program of programs/koch or of 6.2."""
-    folder = tmp_path_factory.mktemp("koch")
-    (folder / "square_speed.irl").write_text(SPEED_LIMITED)
+def experiment():
+    """`experiment(name, tick_ms, cell)`: the finished run of a program and a cell of programs/koch."""
 
     @cache
-    def run(name: str, tick_ms: int) -> irlx.Run:
-        own = folder / f"{name}.irl"
-        program = own if own.exists() else PROGRAMS / f"{name}.irl"
-        return irlx.run(program, cell=PROGRAMS / "square.toml", tick_ms=tick_ms)
+    def run(name: str, tick_ms: int, cell: str = "square") -> irlx.Run:
+        return irlx.run(PROGRAMS / f"{name}.irl", cell=PROGRAMS / f"{cell}.toml", tick_ms=tick_ms)
 
     return run
 
@@ -113,7 +86,8 @@ def square():
     """The robot and the path as this file has them."""
 
     class Square:
-        pass
+        axes, offsets, tool, corners = AXES, OFFSETS, TOOL, CORNERS
 
     Square.forward, Square.demanded = staticmethod(forward), staticmethod(demanded)
+    Square.share_of_way = staticmethod(share_of_way)
     return Square

@@ -35,7 +35,7 @@ def motion_of(name: str, dt: float) -> PathMotion:
     plan = PlannedPath(path, law.stretched(ticks * dt), ticks, law)
     least = LeastMotion(robot.weights)
     return PathMotion(
-        plan, robot.start, PostureTerm(lambda s: least, False), dt, 1, lambda t: whole_ticks(t, dt)
+        plan, robot.start, PostureTerm(lambda s, _: least, False), dt, 1, lambda t: whole_ticks(t, dt)
     )
 
 

@@ -229,7 +229,7 @@ def move(
     """The block of a move."""
     course = laws.pop("course", None)
     entries = {"kind": kind, "target": target, "law": law(**laws), "limits": [], "course": course}
-    return Step(MOVE, {**entries, "reconfiguration": None}, ticks, rail, name)
+    return Step(MOVE, {**entries, "reconfiguration": None, "criteria": []}, ticks, rail, name)
 
 
 def steps() -> list[Step]:

@@ -69,7 +69,7 @@ class Machine:
         least = LeastMotion(self.weights)
         start = self.start if start is None else start
         ticking = Ticking(dt, lambda time: whole_ticks(time, dt), lambda clock: list(demands(path, clock, 1)))
-        return MotionTask(path, law, law.acc, start, lambda s: least, ticking)
+        return MotionTask(path, law, law.acc, start, lambda s, _: least, ticking)
 
     def errors(self, q: np.ndarray, poses) -> tuple[float, float]:
         """Largest distance (m) and angle (rad) of postures (N, n) from poses."""

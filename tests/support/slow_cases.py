@@ -32,7 +32,7 @@ def walked(name: str, limits: JointLimits, frozen: tuple[int, ...] = ()) -> Pass
     robot, grid = machine(name), grid_of(name)
     least = LeastMotion(robot.weights)
     bounds = reserved(limits, grid.intervals + 1, RESERVE)
-    return elastic_walk(robot.model(limits, frozen), grid, robot.start, lambda s: least, bounds, RESERVE)
+    return elastic_walk(robot.model(limits, frozen), grid, robot.start, lambda s, _: least, bounds, RESERVE)
 
 
 @cache

@@ -95,7 +95,7 @@ def test_any_header(tick_ns, bound, stream, kit):
         limits = kit.limits().with_pair(kind, np.full(7, bound), np.full(7, bound))
         header = replace(stream.header, limits=limits, tick_ns=tick_ns)
         report = verify_stream(replace(stream, header=header), kit.ROBOT)
-        assert report[f"{kind} limits"].status in ("ok", "failed")
+        assert report["ticks"].status == "failed"
         assert str(report)
 
 

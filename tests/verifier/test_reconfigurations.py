@@ -9,7 +9,7 @@ from irlx.blocks import CyclicBlock, FreezeBlock, JointTarget, MotionLaw, Reconf
 from irlx.streams import read_stream, write_stream
 from irlx.verifier import render_table, verify_stream
 
-LAW = MotionLaw(0.5, 2.0, 1.0, 4.0)
+LAW = MotionLaw(5.0, 20.0, 10.0, 40.0)
 START = np.array([0.0, 0.5, 0.25, 0.4, 0.3, 0.2, -0.1])
 TICKS = 60
 
@@ -98,5 +98,5 @@ def test_a_return_after_it_is_not_judged(gantry_kit, robot):
     reconfigure(maker, 0.3)
     maker.lin((0.5, 0.25, 0.4))
     check = verify_stream(maker.stream(), robot)["cyclic closure"]
-    assert check.status == "ok"
+    assert check.status == "not checked"
     assert "1 of 1 returns not judged" in check.detail

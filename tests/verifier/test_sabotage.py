@@ -724,7 +724,7 @@ OTHER_DAMAGES = [
     Damage("JOINTLIMIT away, a gap left", without_record("switch", False), "blocks, .."),
     Damage("a move's record away", without_record("corner", False), "blocks, .."),
     Damage(
-        "1 mm further", edited("last", target=moved(0, 0, -1e-3)), "path progress, goal position, program"
+        "1 mm further", edited("last", target=moved(0, 0, -1e-3)), "path progress, goal position, program, .."
     ),
     Damage(
         "1 mm less", edited("last", target=moved(0, 0, 1e-3)), "goal position, path position, program, .."
@@ -737,7 +737,9 @@ OTHER_DAMAGES = [
     Damage(
         "SPEED lowered by 1 %", edited("line", law=scaled("speed", 0.99)), "programmed speed, program", "line"
     ),
-    Damage("ACC lowered", edited("line", law=scaled("acc", 0.9)), "programmed acceleration, program", "line"),
+    Damage(
+        "ACC lowered", edited("line", law=scaled("acc", 0.9)), "programmed acceleration, program, ..", "line"
+    ),
     Damage(
         "SPEED_PTP lowered", edited("ptp", law=scaled("speed_ptp", 0.8)), "programmed speed, program", "ptp"
     ),
@@ -749,7 +751,10 @@ OTHER_DAMAGES = [
     Damage("a clause away", edited("clause", limits=()), "program"),
     Damage("LIN called PTP", edited("line", kind=MoveKind.PTP), "PTP straight, program, ..", "line"),
     Damage(
-        "ANGLE doubled", edited("round", course=scaled("angle", 2.0)), "path progress, program", last("round")
+        "ANGLE doubled",
+        edited("round", course=scaled("angle", 2.0)),
+        "path progress, program, ..",
+        last("round"),
     ),
     Damage("another via", edited("arc", course=via_moved(1e-3, 0, 0)), "path position, program, ..", "arc"),
     Damage("another joint frozen", edited("freezing", joints=(4,)), "frozen joints, program", "frozen", 4),

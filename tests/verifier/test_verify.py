@@ -37,8 +37,7 @@ def test_good_stream_passes(good: JointStream, robot) -> None:
     report = verify_stream(good, robot)
     assert report.passed, render_table(report)
     assert {check.name for check in report.unchecked} == UNASKED
-    absent = {"file", "written rates", "programmed time"}
-    absent |= {"reconfiguration position", "reconfiguration orientation"}
+    absent = {"file", "written rates"} | {name for name in CHECKS if name.startswith("reconfiguration")}
     assert {check.name for check in report.without_case} == absent
     assert tuple(check.name for check in report.checks) == CHECKS
 
@@ -46,7 +45,8 @@ def test_good_stream_passes(good: JointStream, robot) -> None:
 @pytest.mark.parametrize("ending", [".irdata", ".npz", ".csv"])
 def test_written_streams_pass(ending: str, good: JointStream, robot, tmp_path: Path) -> None:
     write_stream(good, tmp_path / f"a{ending}")
-    report = verify_stream(read_stream(tmp_path / f"a{ending}"), robot)
+    stream = read_stream(tmp_path / f"a{ending}")
+    report = verify_stream(stream, robot, may_lack_blocks=ending == ".csv")
     assert report.passed
     assert ("path position" in {check.name for check in report.unchecked}) == (ending == ".csv")
 
@@ -176,7 +176,7 @@ def test_a_row_dropped_and_the_ticks_renumbered(good: JointStream, robot) -> Non
     kept = np.delete(np.arange(len(good.ticks)), 60)
     report = verify_stream(take(good, kept, np.arange(len(kept))), robot)
     assert_caught(report, "blocks", {})
-    assert "block 6 was recorded at tick 92" in report["blocks"].detail
+    assert "was recorded at tick 92, but the robot came to rest at 91" in report["blocks"].detail
 
 
 @pytest.mark.req("STR-06")
@@ -280,7 +280,7 @@ def test_an_active_limit_excuses_from_closing(gantry_kit, robot) -> None:
         return verify_stream(maker.stream(), robot)
 
     closure = run(0.05)["cyclic closure"]
-    assert closure.status == "ok"
+    assert closure.status == "not checked"
     assert closure.worst is not None
     assert closure.worst.value == pytest.approx(0.05)
     assert "1 of 1 returns not judged" in closure.detail
@@ -299,14 +299,23 @@ def renumbered(records):
     return tuple(replace(r, block=replace(r.block, id=number)) for number, r in enumerate(records, start=2))
 
 
+REST = ", but the robot came to rest at"
+
+
 def test_misfitting_blocks(good: JointStream, robot) -> None:
     first = good.records[0]
     for records, words in [
         (good.records[1:], "block 2 stands where 1 is due"),
-        ((replace(first, tick=-1), *good.records[1:]), "out of order"),
+        (
+            (replace(first, tick=-1), *good.records[1:]),
+            "block 1 was recorded at tick -1, but the robot came to rest at 0",
+        ),
         ((first, first, *good.records[1:]), "block 1 stands where 2 is due"),
-        ((first, *renumbered(good.records[2:])), "no recorded move has the id"),
-        ((first, replace(good.records[1], tick=20), *good.records[2:]), "midst of block 1"),
+        ((first, *renumbered(good.records[2:])), "block 3 was recorded at tick 92"),
+        (
+            (first, replace(good.records[1], tick=20), *good.records[2:]),
+            f"block 2 was recorded at tick 20{REST} 41",
+        ),
     ]:
         report = verify_stream(replace(good, records=records), robot)
         assert_caught(report, "blocks", {})

@@ -6,6 +6,7 @@ numbered from 1 in the robot's order.
 """
 
 from irlx.blocks.block import Block, HaltBlock, Origin
+from irlx.blocks.criterion import CriterionBlock, CriterionChoice, CriterionClause, CriterionParam
 from irlx.blocks.move import ArcCourse, JointTarget, MotionLaw, MoveBlock, MoveKind, PoseTarget
 from irlx.blocks.options import (
     CyclicBlock,
@@ -15,13 +16,18 @@ from irlx.blocks.options import (
     LimitKind,
     LimitSwitchBlock,
 )
-from irlx.blocks.questions import AskPosture, Question
+from irlx.blocks.questions import AskPosture, AskPostureOf, Question
 from irlx.blocks.reconfigure import ReconfigureBlock
 
 __all__ = [
     "ArcCourse",
     "AskPosture",
+    "AskPostureOf",
     "Block",
+    "CriterionBlock",
+    "CriterionChoice",
+    "CriterionClause",
+    "CriterionParam",
     "CyclicBlock",
     "FreezeBlock",
     "HaltBlock",

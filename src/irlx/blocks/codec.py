@@ -15,13 +15,22 @@ from math import isfinite
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
 from irlx.blocks.block import Block, HaltBlock
+from irlx.blocks.criterion import CriterionBlock
 from irlx.blocks.move import MoveBlock
 from irlx.blocks.options import CyclicBlock, FreezeBlock, LimitSwitchBlock
 from irlx.blocks.reconfigure import ReconfigureBlock
 
 BLOCK_TYPES: dict[str, type[Block]] = {
     kind.__name__: kind
-    for kind in (MoveBlock, ReconfigureBlock, HaltBlock, LimitSwitchBlock, FreezeBlock, CyclicBlock)
+    for kind in (
+        MoveBlock,
+        ReconfigureBlock,
+        HaltBlock,
+        LimitSwitchBlock,
+        FreezeBlock,
+        CyclicBlock,
+        CriterionBlock,
+    )
 }
 """Every block there is, by the name that its plain form carries."""
 

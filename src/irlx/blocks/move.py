@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from irlx.blocks.block import Block
+from irlx.blocks.criterion import CriterionClause
 from irlx.blocks.options import LimitClause
 
 
@@ -73,7 +74,7 @@ class MoveBlock(Block):
     """One move of the tool (LIN, CIRCLE) or of the joints (PTP) to a target; a CIRCLE has a `course`.
 
     `reconfiguration`: posture to be drawn to on the way, the target's pose being kept; the cyclic option
-    is off for such a move.
+    is off for such a move. `criteria` are added for this move alone.
     """
 
     kind: MoveKind
@@ -82,3 +83,4 @@ class MoveBlock(Block):
     limits: tuple[LimitClause, ...] = ()
     course: ArcCourse | None = None
     reconfiguration: JointTarget | None = None
+    criteria: tuple[CriterionClause, ...] = ()

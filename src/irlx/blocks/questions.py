@@ -17,4 +17,17 @@ class AskPosture:
     origin: Origin
 
 
-Question = AskPosture
+@dataclass(frozen=True)
+class AskPostureOf:
+    """Which posture of this pose would MOVE PTP end in, all blocks so far executed?
+
+    `position` in m; `orientation` as unit quaternion (x, y, z, w), or None for that of the tool at this
+    moment. Answer: tuple of joint values, rad or m.
+    """
+
+    origin: Origin
+    position: tuple[float, float, float]
+    orientation: tuple[float, float, float, float] | None
+
+
+Question = AskPosture | AskPostureOf

@@ -7,6 +7,7 @@ from functools import singledispatch
 from math import degrees
 
 from irlx.blocks.block import Block, HaltBlock
+from irlx.blocks.criterion import CriterionBlock, CriterionChoice
 from irlx.blocks.move import JointTarget, MotionLaw, MoveBlock, MoveKind, PoseTarget
 from irlx.blocks.options import CyclicBlock, FreezeBlock, JointRange, LimitKind, LimitSwitchBlock
 from irlx.blocks.reconfigure import ReconfigureBlock
@@ -54,6 +55,7 @@ def _(block: MoveBlock, joint_units: Sequence[str]) -> str:
     words += [f"WITH {_SWITCH[clause.kind]} {_range(clause.range, joint_units)}" for clause in block.limits]
     if block.reconfiguration is not None:
         words.append(f"WITH RECONFIGURATION {_joint_values(block.reconfiguration.values, joint_units)}")
+    words += [f"WITH CRITERION {_criterion(clause.choice)}" for clause in block.criteria]
     return " ".join(words)
 
 
@@ -79,6 +81,16 @@ def _(block: FreezeBlock, joint_units: Sequence[str]) -> str:
 @_words.register
 def _(block: CyclicBlock, joint_units: Sequence[str]) -> str:
     return "CYCLICSTART" if block.active else "CYCLICEND"
+
+
+@_words.register
+def _(block: CriterionBlock, joint_units: Sequence[str]) -> str:
+    return f"CRITERIONEND {block.name}" if block.choice is None else f"CRITERION {_criterion(block.choice)}"
+
+
+def _criterion(choice: CriterionChoice) -> str:
+    params = [f"{param.name.lower()} {number(param.value)}" for param in choice.params]
+    return " ".join([choice.name, f"weight {number(choice.weight)}", *params])
 
 
 def _target(target: PoseTarget | JointTarget, joint_units: Sequence[str]) -> str:

@@ -56,6 +56,13 @@ def add_parser(commands: Any) -> None:
         metavar="N",
         help="also tell what decided tick N: demand, bounds of every joint with their source, criteria",
     )
+    parser.add_argument(
+        "--plugin",
+        action="append",
+        default=[],
+        metavar="M",
+        help="import a module or a .py file that registers criteria of your own; may be given several times",
+    )
     parser.add_argument("--json", action="store_true", help="print the summary as JSON")
     parser.add_argument("--quiet", action="store_true", help="no progress, no summary")
     parser.add_argument("--no-verify", action="store_true", help="do not check the written files")
@@ -100,6 +107,10 @@ def _prepared(options: argparse.Namespace) -> tuple[Job, list[Path]]:
     from irlx.program import load
 
     try:
+        for name in options.plugin:
+            from irlx.cli.plugin import import_plugin
+
+            import_plugin(name)
         # Before the numeric libraries are imported: a mistake in the text is told at once.
         program = load(options.program, options.cell)
         from irlx.pipeline import prepare

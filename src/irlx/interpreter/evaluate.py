@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
+from irlx.blocks import AskPostureOf
 from irlx.diagnostics import SourceText
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.interpreter.conversion import Where, assemble, count, finite, fit, part_type, whole_number
@@ -10,21 +13,30 @@ from irlx.interpreter.functions import FUNCTIONS, Function
 from irlx.interpreter.operators import binary, unary
 from irlx.interpreter.scope import Scope, Variable
 from irlx.interpreter.system_names import system_name
-from irlx.interpreter.types import INT, ORIENTATION, REAL, Array, Record, Type
+from irlx.interpreter.targets import origin_of, pose_target
+from irlx.interpreter.types import INT, ORIENTATION, POSE, POSITION, REAL, Array, Record, Type
+from irlx.interpreter.unanswered import Unanswered
 from irlx.interpreter.values import ArrayValue, RecordValue, Value, is_of_type, is_set, type_name, unset_part
 from irlx.language import tree
+
+POSTURE = "posture"
+"""The function that asks the machine, casefolded."""
 
 
 class Evaluator:
     """Evaluates expressions of one program in its scope.
 
     `expected` is the type that the place of an expression asks for; aggregates take their type from
-    it. All methods raise InterpreterError with the span of the part that is wrong.
+    it. All methods raise InterpreterError with the span of the part that is wrong, and Unanswered for what
+    only the machine can tell and `answers` does not; where these are None, there is no machine to ask.
     """
 
-    def __init__(self, source: SourceText, scope: Scope) -> None:
+    def __init__(
+        self, source: SourceText, scope: Scope, answers: Mapping[AskPostureOf, Value] | None = None
+    ) -> None:
         self.source = source
         self.scope = scope
+        self._answers = answers
 
     def where(self, node: tree.Node) -> Where:
         """Place of a node for messages."""
@@ -108,6 +120,8 @@ class Evaluator:
     # ---- functions
 
     def _call(self, name: tree.Name, arguments: tuple[tree.Expression, ...], node: tree.Node) -> Value:
+        if name.key == POSTURE:
+            return self._posture(name, arguments, node)
         function = FUNCTIONS.get(name.key)
         if function is None:
             raise fail("IRL590", self.source, name.span, what=f"the function {name.name}")
@@ -121,6 +135,22 @@ class Evaluator:
             for argument, type in pairs
         ]
         return self._apply(function, values, node)
+
+    def _posture(self, name: tree.Name, arguments: tuple[tree.Expression, ...], node: tree.Node) -> Value:
+        missing = missing_in_posture(len(arguments), in_declaration=self._answers is None)
+        if missing or self._answers is None:
+            raise fail("IRL590", self.source, name.span, what=missing)
+        if len(arguments) != 1:
+            data = {"function": "POSTURE", "expected": count(1, "value"), "found": len(arguments)}
+            raise fail("IRL228", self.source, node.span, **data)
+        value = self.one_of(arguments[0], (POSE, POSITION))
+        if not isinstance(value, RecordValue):
+            raise TypeError("poses are records")
+        target = pose_target(value)
+        question = AskPostureOf(origin_of(self.source, node), target.position, target.orientation)
+        if question not in self._answers:
+            raise Unanswered(question)
+        return self._answers[question]
 
     def _apply(self, function: Function, values: list[Value], node: tree.Node) -> Value:
         where = self.where(node)
@@ -243,6 +273,13 @@ class Evaluator:
             raise fail("IRL229", self.source, node.span, candidates=" or ".join(names))
         expected = " or ".join(type.name for type in candidates)
         raise fail("IRL222", self.source, node.span, expected=expected, found=count(len(node.items), "value"))
+
+
+def missing_in_posture(arguments: int, *, in_declaration: bool) -> str:
+    """What a POSTURE with so many arguments asks for that is not executed, or ''."""
+    if arguments == 2:
+        return "the function POSTURE with an obstacle"
+    return "the function POSTURE in a declaration" if in_declaration else ""
 
 
 def _one_part(type: Type | None) -> bool:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Generator, Iterator
 from math import radians
-from pathlib import PurePath
 
 from irlx.blocks import (
     ArcCourse,
     AskPosture,
+    AskPostureOf,
     Block,
+    CriterionBlock,
+    CriterionClause,
     CyclicBlock,
     FreezeBlock,
     HaltBlock,
@@ -30,12 +32,13 @@ from irlx.diagnostics import SourceText
 from irlx.interpreter.declare import declared_scope
 from irlx.interpreter.errors import fail
 from irlx.interpreter.evaluate import Evaluator, replaced
-from irlx.interpreter.functions import parts_of, vector_of
-from irlx.interpreter.quaternion import Vector
+from irlx.interpreter.parameters import criterion_choice, criterion_name, positive, share
 from irlx.interpreter.scope import Variable
 from irlx.interpreter.setting import Setting
 from irlx.interpreter.support import MOVE_PARAMS, missing_in_move, part_name, reads_actual
+from irlx.interpreter.targets import origin_of, pose_target
 from irlx.interpreter.types import POSE, POSITION, STRING, Record, Type
+from irlx.interpreter.unanswered import Unanswered
 from irlx.interpreter.values import RecordValue, Value, is_set
 from irlx.language import tree
 
@@ -63,7 +66,8 @@ class _Interpreter:
         self._source = source
         self._setting = setting
         self._scope = declared_scope(program, source, setting)
-        self._evaluator = Evaluator(source, self._scope)
+        self._answers: dict[AskPostureOf, Value] = {}
+        self._evaluator = Evaluator(source, self._scope, self._answers)
         self._blocks = 0
 
     def run(self) -> Blocks:
@@ -71,18 +75,36 @@ class _Interpreter:
             if reads_actual(statement):
                 answer = yield AskPosture(self._origin(statement))
                 self._set_actual(answer or ())
-            match statement:
-                case tree.Assignment():
-                    self._assign(statement)
-                case tree.Move():
-                    yield from self._move(statement)
-                case tree.Reconfiguration():
-                    yield self._reconfigure(statement)
-                case tree.Halt():
-                    yield HaltBlock(id=self._next_id(), origin=self._origin(statement))
-                    return
-                case _:
-                    yield self._switch(statement)
+            yield from (yield from self._answered(statement))
+            if isinstance(statement, tree.Halt):
+                return
+
+    def _answered(self, statement: tree.Statement) -> Generator[Question, Answer, list[Block]]:
+        """Blocks of a statement. What only the machine can tell is asked, and all evaluated again:
+        expressions change nothing, and an assignment happens once everything has a value."""
+        self._answers.clear()
+        number = self._blocks
+        while True:
+            try:
+                return self._blocks_of(statement)
+            except Unanswered as unanswered:
+                self._blocks = number
+                question = unanswered.question
+            self._answers[question] = self._main_joints((yield question) or ())
+
+    def _blocks_of(self, statement: tree.Statement) -> list[Block]:
+        """Blocks of a statement in their order; an assignment has none."""
+        match statement:
+            case tree.Assignment():
+                self._assign(statement)
+                return []
+            case tree.Move():
+                return list(self._move(statement))
+            case tree.Reconfiguration():
+                return [self._reconfigure(statement)]
+            case tree.Halt():
+                return [HaltBlock(id=self._next_id(), origin=self._origin(statement))]
+        return [self._switch(statement)]
 
     # ---- bookkeeping
 
@@ -91,18 +113,19 @@ class _Interpreter:
         return self._blocks
 
     def _origin(self, node: tree.Node, last: tree.Node | None = None) -> Origin:
-        """Place of a node, or of all from it to the end of a later one."""
-        line, _ = self._source.line_and_column(node.span.start)
-        return Origin(PurePath(self._source.name).name, node.span.start, (last or node).span.end, line)
+        return origin_of(self._source, node, last)
 
     def _set_actual(self, joints: tuple[float, ...]) -> None:
         """Store the posture (rad, m) in R_JOINT_ACT (deg, mm)."""
         variable = self._scope.variables["r_joint_act"]
-        scaled = tuple(value / self._unit(index) for index, value in enumerate(joints))
-        if isinstance(variable.value, RecordValue) and isinstance(variable.type, Record):
-            main = variable.type.fields[0][1]
-            if isinstance(main, Record):
-                variable.value = replaced(variable.value, [0], RecordValue(main, scaled))
+        variable.value = replaced(variable.value, [0], self._main_joints(joints))
+
+    def _main_joints(self, joints: tuple[float, ...]) -> RecordValue:
+        """MAIN_JOINT (deg, mm) of a posture (rad, m)."""
+        type = self._scope.types["main_joint"]
+        if not isinstance(type, Record):
+            raise TypeError("joint types are records")
+        return RecordValue(type, tuple(value / self._unit(index) for index, value in enumerate(joints)))
 
     def _unit(self, joint: int) -> float:
         """Size of the program's unit of a joint in SI: mm in m, or degree in rad."""
@@ -140,6 +163,11 @@ class _Interpreter:
                 return CyclicBlock(id=id, origin=origin, active=True)
             case tree.CyclicEnd():
                 return CyclicBlock(id=id, origin=origin, active=False)
+            case tree.CriterionStart():
+                choice = criterion_choice(statement, self._evaluator)
+                return CriterionBlock(id=id, origin=origin, name=choice.name, choice=choice)
+            case tree.CriterionEnd(name=name):
+                return CriterionBlock(id=id, origin=origin, name=criterion_name(name), choice=None)
             case _:
                 raise fail("IRL590", self._source, statement.span, what=part_name(statement))
 
@@ -158,7 +186,7 @@ class _Interpreter:
 
     # ---- moves
 
-    def _move(self, statement: tree.Move) -> Blocks:
+    def _move(self, statement: tree.Move) -> Iterator[Block]:
         missing = missing_in_move(statement)
         if missing is not None:
             node, what = missing
@@ -169,6 +197,11 @@ class _Interpreter:
             for clause in statement.clauses
             if isinstance(clause, tree.WithLimit)
             for origin in (self._origin(clause),)
+        )
+        criteria = tuple(
+            CriterionClause(criterion_choice(clause, self._evaluator), self._origin(clause))
+            for clause in statement.clauses
+            if isinstance(clause, tree.WithCriterion)
         )
         stops = _stops(statement)
         for (via, expression), posture in zip(stops, self._postures(statement, len(stops)), strict=True):
@@ -185,6 +218,7 @@ class _Interpreter:
                 limits=limits,
                 course=None if via is None else self._course(statement, via),
                 reconfiguration=posture,
+                criteria=criteria,
             )
 
     def _postures(self, statement: tree.Move, moves: int) -> list[JointTarget | None]:
@@ -226,11 +260,8 @@ class _Interpreter:
         value = self._evaluator.one_of(expression, (POSE, POSITION, main, joint))
         if not isinstance(value, RecordValue):
             raise TypeError("targets are records")
-        if value.type == POSITION:
-            return PoseTarget(_metres(vector_of(value)), None)
-        if value.type == POSE:
-            at, (w, x, y, z) = parts_of(value)
-            return PoseTarget(_metres(at), (x, y, z, w))
+        if value.type in (POSITION, POSE):
+            return pose_target(value)
         return JointTarget(self._joint_values(value.values[0] if value.type == joint else value))
 
     def _law(self, statement: tree.Move | tree.Reconfiguration) -> MotionLaw:
@@ -240,36 +271,29 @@ class _Interpreter:
         def real(param: str) -> float:
             expression = given.get(param)
             if expression is not None:
-                return self._positive(param.upper(), self._evaluator.number(expression), expression)
+                value = self._evaluator.number(expression)
+                return positive(param.upper(), value, expression, self._source)
             variable = self._scope.variables[MOVE_PARAMS[param].casefold()]
             if not isinstance(variable.value, float) or not is_set(variable.value):
                 raise TypeError("system variables are numbers")
-            return self._positive(variable.name, variable.value, statement)
+            return positive(variable.name, variable.value, statement, self._source)
+
+        def part(param: str) -> float:
+            return share(param.upper(), real(param), given.get(param, statement), self._source)
 
         duration = None
         if "time" in given:
-            duration = self._positive("TIME", self._evaluator.number(given["time"]), given["time"])
+            value = self._evaluator.number(given["time"])
+            duration = positive("TIME", value, given["time"], self._source)
         return MotionLaw(
             speed=real("speed") * 1e-3,
             acc=real("acc") * 1e-3,
             speed_ori=radians(real("speed_ori")),
             acc_ori=radians(real("acc_ori")),
-            speed_ptp=self._share("speed_ptp", real("speed_ptp"), given.get("speed_ptp", statement)),
-            acc_ptp=self._share("acc_ptp", real("acc_ptp"), given.get("acc_ptp", statement)),
+            speed_ptp=part("speed_ptp"),
+            acc_ptp=part("acc_ptp"),
             duration=duration,
         )
-
-    def _positive(self, name: str, value: float, node: tree.Node) -> float:
-        if not value > 0.0:
-            data = {"param": name, "expected": "greater than 0", "value": f"{value:g}"}
-            raise fail("IRL505", self._source, node.span, **data)
-        return value
-
-    def _share(self, name: str, percent: float, node: tree.Node) -> float:
-        if percent > 100.0:
-            data = {"param": name.upper(), "expected": "at most 100 %", "value": f"{percent:g}"}
-            raise fail("IRL505", self._source, node.span, **data)
-        return percent / 100.0
 
 
 def _stops(statement: tree.Move) -> list[tuple[tree.Expression | None, tree.Expression]]:
@@ -278,10 +302,6 @@ def _stops(statement: tree.Move) -> list[tuple[tree.Expression | None, tree.Expr
     if statement.kind != "CIRCLE":
         return [(None, target) for target in targets]
     return list(zip(targets[::2], targets[1::2], strict=True))
-
-
-def _metres(vector: Vector) -> Vector:
-    return (vector[0] * 1e-3, vector[1] * 1e-3, vector[2] * 1e-3)
 
 
 def _part_type(variable: Variable, steps: list[int]) -> Type:

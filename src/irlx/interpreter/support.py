@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from irlx.blocks.criterion import LIBRARY
 from irlx.diagnostics import Diagnostic, Place, SourceText, report
+from irlx.diagnostics.diagnostic import near_matches
+from irlx.interpreter.evaluate import POSTURE, missing_in_posture
 from irlx.interpreter.functions import FUNCTIONS
+from irlx.interpreter.parameters import criterion_name
 from irlx.interpreter.setting import SYSTEM_REALS
 from irlx.interpreter.system_names import LATER_TYPES, system_name
 from irlx.language import builtins, tree
@@ -28,8 +32,12 @@ _STATEMENTS = (
     tree.CyclicStart,
     tree.CyclicEnd,
     tree.Reconfiguration,
+    tree.CriterionStart,
+    tree.CriterionEnd,
 )
-_READ_ONLY_FUNCTIONS = (frozenset(builtins.FUNCTIONS) | frozenset(builtins.TYPES)) - frozenset(FUNCTIONS)
+_CLAUSES = (tree.WithLimit, tree.WithReconfiguration, tree.WithCriterion)
+_EXECUTED_FUNCTIONS = frozenset({*FUNCTIONS, POSTURE})
+_READ_ONLY_FUNCTIONS = (frozenset(builtins.FUNCTIONS) | frozenset(builtins.TYPES)) - _EXECUTED_FUNCTIONS
 _ACTUAL = "r_joint_act"
 _EXECUTED_NAMES = frozenset({_ACTUAL, *(name.casefold() for name in SYSTEM_REALS)})
 MOVE_PARAMS = {
@@ -69,9 +77,6 @@ _NAMES = {
     "WaitFor": "WAIT FOR",
     "ObstacleStart": "OBSTACLE",
     "ObstacleEnd": "OBSTACLEEND",
-    "CriterionStart": "CRITERION",
-    "CriterionEnd": "CRITERIONEND",
-    "WithCriterion": "WITH CRITERION",
     "WithTolerance": "WITH TOLERANCE",
 }
 
@@ -93,7 +98,7 @@ def missing_in_move(move: tree.Move) -> tuple[tree.Node, str] | None:
         if param.name.key not in MOVE_PARAMS:
             return param, f"the parameter {param.name.name}"
     for clause in move.clauses:
-        if not isinstance(clause, tree.WithLimit | tree.WithReconfiguration):
+        if not isinstance(clause, _CLAUSES):
             return clause, part_name(clause)
         postures = clause.targets if isinstance(clause, tree.WithReconfiguration) else ()
         if move.kind == "CIRCLE" and len(postures) == len(move.targets):
@@ -102,7 +107,10 @@ def missing_in_move(move: tree.Move) -> tuple[tree.Node, str] | None:
 
 
 def unsupported(program: tree.Program, source: SourceText) -> list[Diagnostic]:
-    """A warning, IRL591, for every part of a program that a run would stop at."""
+    """A warning, IRL591, for every part of a program that a run would stop at.
+
+    IRL363 for criteria outside the library, at which it stops unless they are registered by then.
+    """
     declared = frozenset(symbol.name.key for symbol in declared_symbols(program.declarations))
     found: list[tuple[tree.Node, str]] = []
     for declaration in program.declarations:
@@ -118,7 +126,21 @@ def unsupported(program: tree.Program, source: SourceText) -> list[Diagnostic]:
         if missing is not None:
             found.append(missing)
         found += _parts(statement, declared)
-    return [report("IRL591", Place.in_text(source, node.span), what=what) for node, what in found]
+    warnings = [report("IRL591", Place.in_text(source, node.span), what=what) for node, what in found]
+    return [*warnings, *_unknown_criteria(program, source)]
+
+
+def _unknown_criteria(program: tree.Program, source: SourceText) -> Iterator[Diagnostic]:
+    """A warning at the first place of every criterion that is none of the library."""
+    told: set[str] = set()
+    for node in tree.walk(program):
+        if not isinstance(node, tree.CriterionStart | tree.WithCriterion):
+            continue
+        name = criterion_name(node.name)
+        if name not in LIBRARY and name not in told:
+            told.add(name)
+            near, place = near_matches(name, LIBRARY), Place.in_text(source, node.name.span)
+            yield report("IRL363", place, name=name, near=near, known=", ".join(LIBRARY))
 
 
 def _parts(root: tree.Node, declared: frozenset[str]) -> Iterator[tuple[tree.Node, str]]:
@@ -127,6 +149,11 @@ def _parts(root: tree.Node, declared: frozenset[str]) -> Iterator[tuple[tree.Nod
         match node:
             case tree.FunctionCall(name=name) if name.key in (_READ_ONLY_FUNCTIONS | declared):
                 yield node, f"the function {name.name}"
+            case tree.FunctionCall(name=name, arguments=arguments) if name.key == POSTURE:
+                in_declaration = isinstance(root, _DECLARATIONS)
+                missing = missing_in_posture(len(arguments), in_declaration=in_declaration)
+                if missing:
+                    yield node, missing
             case tree.NamedType(name=name) if name.key in LATER_TYPES - declared:
                 yield node, f"the type {name.name}"
             case tree.Designator(base=name) if name.key not in _EXECUTED_NAMES | declared:

@@ -10,6 +10,7 @@ from typing import TypeAlias
 from irlx.diagnostics import Diagnostic, Place, SourceText, Span, report
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.language import tree
+from irlx.language.criteria import check_criterion
 from irlx.language.moves import check_move
 from irlx.language.names import check_names
 from irlx.language.parser import parse
@@ -86,6 +87,8 @@ def _static_findings(root: tree.Node, source: SourceText) -> list[Diagnostic]:
             findings += check_move(node, source)
         elif isinstance(node, tree.FreezeStart):
             findings += check_freeze(node, source)
+        elif isinstance(node, tree.CriterionStart | tree.WithCriterion):
+            findings += check_criterion(node, source)
     return findings
 
 

@@ -13,7 +13,7 @@ __all__ = ["check_move"]
 
 def check_move(move: tree.Move, source: SourceText) -> list[Diagnostic]:
     """Findings on one MOVE."""
-    found = [*_order(move), *_kind(move), *_reconfigurations(move)]
+    found = [*_order(move), *_kind(move), *_clauses(move)]
     return [report(code, Place.in_text(source, span), **data) for code, span, data in found]
 
 
@@ -43,13 +43,15 @@ def _kind(move: tree.Move) -> Iterator[tuple[str, Span, dict[str, Any]]]:
             yield "IRL404", param.span, {"param": param.name.key.upper(), "kind": move.kind}
 
 
-def _reconfigurations(move: tree.Move) -> Iterator[tuple[str, Span, dict[str, Any]]]:
-    seen: set[object] = set()
+def _clauses(move: tree.Move) -> Iterator[tuple[str, Span, dict[str, Any]]]:
+    seen: set[str] = set()
     for clause in move.clauses:
         kind = _clause_kind(clause)
-        if kind in seen:
+        if kind.casefold() in seen:
             yield "IRL406", clause.span, {"clause": kind}
-        seen.add(kind)
+        elif isinstance(clause, tree.WithCriterion) and move.kind == "PTP":
+            yield "IRL407", clause.span, {"clause": kind}
+        seen.add(kind.casefold())
         if not isinstance(clause, tree.WithReconfiguration):
             continue
         # A PATH may take both lists from array variables, whose lengths the text does not tell.

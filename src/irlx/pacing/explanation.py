@@ -113,7 +113,7 @@ def explain_tick(
         _path_tick(rows.path, demand, rows.length) if rows.path is not None and demand is not None else None,
         (float(rows.path_position_error[row]), float(rows.path_orientation_error[row])),
         joints,
-        _criteria(rows, demand, before[row + 1], step, weights),
+        _criteria(rows, row, demand, before[row + 1], step, weights),
     )
 
 
@@ -179,12 +179,13 @@ def _joints(
 
 
 def _criteria(
-    rows: MotionRows, demand: Demand | None, q: Array, step: Array, weights: Array
+    rows: MotionRows, row: int, demand: Demand | None, q: Array, step: Array, weights: Array
 ) -> tuple[CriterionValue, ...]:
     least = LeastMotion(weights)
     if demand is None or rows.path is None:
         return (CriterionValue(least.name, least.value(q, step), False),)
-    chosen = rows.path.term.at(demand.s)
+    advance = demand.s - (rows.path.demands[row - 1].s if row > 0 else 0.0)
+    chosen = rows.path.term.at(demand.s, advance).begun(q)
     values = [CriterionValue(chosen.name, chosen.value(q, step), True)]
     if chosen.name != least.name:
         values.append(CriterionValue(least.name, least.value(q, step), False))

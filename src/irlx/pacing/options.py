@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.blocks import (
+    CriterionBlock,
+    CriterionClause,
     CyclicBlock,
     FreezeBlock,
     JointRange,
@@ -21,30 +23,44 @@ from irlx.robot.limits import JointLimits
 
 Array = NDArray[np.float64]
 
+SwitchBlock = LimitSwitchBlock | FreezeBlock | CyclicBlock | CriterionBlock
+"""Blocks that change the options in force."""
+
 
 @dataclass(frozen=True)
 class Options:
     """State of all switches between two blocks.
 
-    `limits` maps a kind to its switch; `frozen` and `frozen_by` the joints held (numbers from 1) and
-    the switch; `cyclic_posture` (n,) the posture that CYCLICSTART stored, None while it is off.
+    `limits` maps a kind to its switch, `criteria` a name to what CRITERION chose; `frozen` and `frozen_by`
+    the joints held (numbers from 1) and the switch; `cyclic_posture` (n,) the posture that CYCLICSTART
+    stored, None while it is off.
     """
 
     limits: dict[LimitKind, LimitSwitchBlock] = field(default_factory=dict)
     frozen: tuple[int, ...] = ()
     frozen_by: FreezeBlock | None = None
     cyclic_posture: Array | None = None
+    criteria: dict[str, CriterionClause] = field(default_factory=dict)
 
-    def after(self, block: LimitSwitchBlock | FreezeBlock | CyclicBlock, q: Array) -> Options:
+    def after(self, block: SwitchBlock, q: Array) -> Options:
         """Options once `block` has executed at posture q (n,). A switch of the same kind is replaced."""
         if isinstance(block, FreezeBlock):
             return replace(self, frozen=block.joints, frozen_by=block if block.joints else None)
         if isinstance(block, CyclicBlock):
             return replace(self, cyclic_posture=q.copy() if block.active else None)
+        if isinstance(block, CriterionBlock):
+            criteria = {name: chosen for name, chosen in self.criteria.items() if name != block.name}
+            if block.choice is not None:
+                criteria[block.name] = CriterionClause(block.choice, block.origin)
+            return replace(self, criteria=criteria)
         limits = {kind: switch for kind, switch in self.limits.items() if kind is not block.kind}
         if block.range is not None:
             limits[block.kind] = block
         return replace(self, limits=limits)
+
+    def criteria_of(self, clauses: Iterable[CriterionClause]) -> tuple[CriterionClause, ...]:
+        """Criteria of a move: the switched ones, and in place of those of their names its clauses."""
+        return tuple({**self.criteria, **{clause.choice.name: clause for clause in clauses}}.values())
 
     def free_joints(self, joints: int) -> NDArray[np.bool_]:
         """True for every joint that is not frozen, shape (n,)."""

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from math import inf
+from math import hypot, inf
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from irlx.blocks import (
+    AskPostureOf,
     Block,
-    CyclicBlock,
+    CriterionBlock,
     FreezeBlock,
     JointTarget,
     LimitSwitchBlock,
@@ -38,7 +39,7 @@ from irlx.pacing.impossible import (
     joint_value,
     slower_than_allowed,
 )
-from irlx.pacing.options import LimitsInForce, Options, limits_in_force
+from irlx.pacing.options import LimitsInForce, Options, SwitchBlock, limits_in_force
 from irlx.pacing.path_motion import Failure, PacedPath, PathMotion, pace_path
 from irlx.pacing.posture_left import (
     JOINTS_GIVEN,
@@ -59,6 +60,7 @@ from irlx.pacing.switches import check_freeze, check_inside, check_joint_target,
 from irlx.promises import PATH_ORIENTATION, PATH_POSITION
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
+from irlx.transform.criteria.combined import Weighted
 from irlx.transform.posture_search import nearest_posture
 from irlx.transform.qp.proxqp import ProxQpSolver
 from irlx.transform.tick import TickSolver
@@ -103,7 +105,14 @@ class Pacer:
         self.warnings: list[Diagnostic] = []
 
     def answer(self, question: Question) -> tuple[float, ...]:
-        """Answer to a question of the interpreter, all blocks before it executed."""
+        """Answer to a question of the interpreter, all blocks before it executed.
+
+        Raises PacingError, IRL522, for the posture of a pose that none reaches.
+        """
+        if isinstance(question, AskPostureOf):
+            in_force = limits_in_force(self._setup.limits, self.options)
+            target = PoseTarget(question.position, question.orientation)
+            return tuple(self._posture_of(target, None, in_force, self._locate(question.origin)).tolist())
         return tuple(float(value) for value in self.q)
 
     def settled(self, block: Block) -> Block:
@@ -124,7 +133,11 @@ class Pacer:
             self.warnings += check_limit(block, self._robot, self._setup.limits, self.q, place)
         if isinstance(block, FreezeBlock):
             check_freeze(block, self._robot, place)
-        if isinstance(block, LimitSwitchBlock | FreezeBlock | CyclicBlock):
+        if isinstance(block, CriterionBlock) and block.choice is not None:
+            from irlx.pacing.criteria import check_criterion
+
+            check_criterion(block.choice, self._robot, place)
+        if isinstance(block, SwitchBlock):
             self.options = self.options.after(block, self.q)
         return None
 
@@ -183,6 +196,7 @@ class Pacer:
         free = self.options.free_joints(self.q.size)
         model = Model(self._setup.kinematics, in_force.limits, self._setup.weights, free)
         term = posture_term(model, self.q, plan.programmed, posture, self.options.cyclic_posture, self._qp)
+        term = term.with_terms(self._added_terms(block, plan, in_force.limits), plan.programmed)
         dt, longest = self._setup.dt, self._setup.max_slow * plan.programmed.duration
 
         def ticks_of(duration: float) -> int:
@@ -198,6 +212,19 @@ class Pacer:
             raise PacingError(explain_failure(paced, around, plan, self.tick + 1, goal, place))
         self._warn_of_posture_left(paced.q[-1], posture, block, place)
         return self._line_rows(block, plan, term, paced)
+
+    def _added_terms(self, block: MoveBlock, plan: PlannedPath, limits: JointLimits) -> tuple[Weighted, ...]:
+        chosen = self.options.criteria_of(block.criteria)
+        if not chosen:
+            return ()
+        from irlx.pacing.criteria import added_terms
+        from irlx.transform.criteria.library import TermSetting
+
+        kinematics, speed = self._setup.kinematics, plan.programmed.speed
+        turning = self._robot.reach * speed * (1.0 if plan.path.is_pure_turn else plan.path.turn_rate)
+        tool_speed = hypot(0.0 if plan.path.is_pure_turn else speed, turning)
+        setting = TermSetting(kinematics, limits, self._setup.weights, self.q, tool_speed)
+        return added_terms(chosen, setting, self._locate)
 
     def _line_targets(
         self, block: MoveBlock, in_force: LimitsInForce, place: Place
@@ -327,17 +354,23 @@ class Pacer:
         """Posture at which a PTP ends: as given, or the nearest one that reaches the pose."""
         if isinstance(block.target, JointTarget):
             return np.array(block.target.values)
+        return self._posture_of(block.target, block.reconfiguration, in_force, place)
+
+    def _posture_of(
+        self, target: PoseTarget, konf: JointTarget | None, in_force: LimitsInForce, place: Place
+    ) -> Array:
+        """The posture of a pose nearest to `konf`, else to that of CYCLICSTART, else to the present one."""
         rotation, _ = self._setup.kinematics.tool_pose(self.q)
-        if block.target.orientation is not None:
-            rotation = np.asarray(Rotation.from_quat(block.target.orientation).as_matrix())
-        position = np.array(block.target.position)
+        if target.orientation is not None:
+            rotation = np.asarray(Rotation.from_quat(target.orientation).as_matrix())
+        position = np.array(target.position)
         farthest = float(np.max(np.abs(position)))
         if farthest > FARTHEST_TARGET:
             raise PacingError(report("IRL522", place, distance=f"{farthest * 1000.0:.6g}", angle="0"))
         free = self.options.free_joints(self.q.size)
         drawn_to = self.options.cyclic_posture if self.options.cyclic_posture is not None else self.q
-        if block.reconfiguration is not None:
-            drawn_to = self._konf(block.reconfiguration, in_force, place)
+        if konf is not None:
+            drawn_to = self._konf(konf, in_force, place)
         start = np.where(free, drawn_to, self.q)
         search = nearest_posture(
             self._setup.kinematics,

@@ -99,10 +99,12 @@ def _walked(
 ) -> tuple[Walk, BrokenBound | None]:
     """The walk at the programmed speed, and the first bound that its rows pass."""
     clock = programmed_clock(motion.plan.law, motion.plan.ticks, motion.dt)
+    advance = np.diff(clock.s, prepend=0.0)
+    first = motion.first_tick
     walked = walk(
         solver,
         StepLimiter(model.limits, motion.dt),
-        lambda demand: motion.term.at(demand.s),
+        lambda demand: motion.term.at(demand.s, float(advance[demand.tick - first])),
         model.free,
         motion.start,
         motion.demands_of(clock),

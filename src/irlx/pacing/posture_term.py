@@ -1,4 +1,5 @@
-"""The one posture term of a move: a posture asked for, else cyclic return, else least motion."""
+"""The one posture term of a move: a posture asked for, else cyclic return, else least motion; and what
+CRITERION adds to it."""
 
 from __future__ import annotations
 
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from irlx.motion.trapezoid import Trapezoid
 from irlx.pacing.governed_return import governed_reference, way_to_best
 from irlx.pacing.slowdown.model import Model
+from irlx.transform.criteria.combined import Combined, Weighted
 from irlx.transform.criteria.criterion import Criterion
 from irlx.transform.criteria.least_motion import LeastMotion
 from irlx.transform.criteria.posture import Posture
@@ -21,10 +23,23 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class PostureTerm:
-    """Criterion of a move by its path parameter; `draws` tells that it draws the joints to a posture."""
+    """Criterion of a move: `at(s, advance)` of a tick that ends at path parameter s, `advance` behind the one
+    before.
 
-    at: Callable[[float], Criterion]
+    `draws` tells that it draws the joints to a posture.
+    """
+
+    at: Callable[[float, float], Criterion]
     draws: bool
+
+    def with_terms(self, terms: tuple[Weighted, ...], law: Trapezoid) -> PostureTerm:
+        """The same with added terms, which act by the time that the way takes at the law's cruising speed."""
+        if not terms:
+            return self
+        base = self.at
+        return PostureTerm(
+            lambda s, advance: Combined(base(s, advance), terms, advance / law.speed), self.draws
+        )
 
 
 def posture_term(
@@ -39,10 +54,10 @@ def posture_term(
     weights = model.weights
     if asked is not None:
         way = asked - start
-        return PostureTerm(lambda s: Posture(weights, start + (s / law.length) * way), True)
+        return PostureTerm(lambda s, _: Posture(weights, start + (s / law.length) * way), True)
     if cyclic is not None:
         away = way_to_best(model, start, cyclic, qp)
         reference = governed_reference(cyclic, away, law, model.limits)
-        return PostureTerm(lambda s: Posture(weights, reference(s)), True)
+        return PostureTerm(lambda s, _: Posture(weights, reference(s)), True)
     fixed = LeastMotion(weights)
-    return PostureTerm(lambda s: fixed, False)
+    return PostureTerm(lambda s, _: fixed, False)

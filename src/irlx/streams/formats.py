@@ -64,7 +64,7 @@ def write_stream(stream: JointStream, path: str | os.PathLike[str]) -> None:
 
     Raises StreamError: IRL004 for an unknown ending, IRL003 where the file cannot be written.
     """
-    _format_of(path, "IRL004").write(stream, Path(path))
+    format_of(path, "IRL004").write(stream, Path(path))
 
 
 def read_stream(path: str | os.PathLike[str]) -> JointStream:
@@ -82,10 +82,11 @@ def scan_stream(path: str | os.PathLike[str]) -> Iterator[ScanItem]:
     StreamError: IRL707 for an unknown ending at once, otherwise what the scanner of the format raises,
     when what stands before the damage has been given out.
     """
-    return _format_of(path, "IRL707").scan(Path(path))
+    return format_of(path, "IRL707").scan(Path(path))
 
 
-def _format_of(path: str | os.PathLike[str], code: str) -> StreamFormat:
+def format_of(path: str | os.PathLike[str], code: str = "IRL707") -> StreamFormat:
+    """The format of a path's ending; raises StreamError with `code` for an unknown one."""
     ending = Path(path).suffix
     chosen = FORMATS.get(ending.lower())
     if chosen is None:

@@ -33,6 +33,10 @@ _TEXTS = (
 )
 
 
+LONGEST_TICK_NS = 2**62
+"""Longest tick that files may have: times in ns fit an integer of 64 bits for a while."""
+
+
 class PlainFormError(ValueError):
     """Plain data that is no header or record; the message names the key."""
 
@@ -73,7 +77,7 @@ def header_from_plain(plain: object) -> StreamHeader:
             **{name: _typed(fields, name, str) for name in _TEXTS},
             joint_names=_texts(fields, "joint_names"),
             joint_units=_texts(fields, "joint_units"),
-            tick_ns=_typed(fields, "tick_ns", int),
+            tick_ns=_tick(fields),
             limits=JointLimits(**sides),
             weights=tuple(map(float, _bounds(fields.get("weights"), "weights"))),
         )
@@ -122,6 +126,13 @@ def _typed(fields: dict[str, Any], name: str, kind: type) -> Any:
     return value
 
 
+def _tick(fields: dict[str, Any]) -> int:
+    tick: int = _typed(fields, "tick_ns", int)
+    if not 0 < tick <= LONGEST_TICK_NS:
+        raise PlainFormError(f"tick_ns: needs 1 to {LONGEST_TICK_NS}")
+    return tick
+
+
 def _texts(fields: dict[str, Any], name: str) -> tuple[str, ...]:
     values = fields.get(name)
     if not isinstance(values, list) or not all(isinstance(value, str) for value in values):
@@ -140,4 +151,7 @@ def _bound(value: object, where: str) -> float:
         return float(value)
     if isinstance(value, bool) or not isinstance(value, int | float) or isnan(value):
         raise PlainFormError(f"{where}: needs numbers, found {value!r}")
-    return float(value)
+    try:
+        return float(value)
+    except OverflowError:
+        raise PlainFormError(f"{where}: a number is too large") from None

@@ -122,11 +122,17 @@ def _meta(archive: zipfile.ZipFile) -> tuple[StreamHeader, list[BlockRecord], In
     records = [record_from_plain(record) for record in meta["records"]]
     if type(meta["complete"]) is not bool:
         raise PlainFormError("complete: needs true or false")
+    return header, records, _runs(meta["ticks"]), meta["complete"]
+
+
+def _runs(plain: object) -> Integers:
+    pairs = plain if isinstance(plain, list) else [None]
+    if not all(isinstance(pair, list) and [type(count) for count in pair] == [int, int] for pair in pairs):
+        raise PlainFormError("ticks: needs pairs of counts")
     try:
-        runs = np.array(meta["ticks"], dtype=np.int64).reshape(-1, 2)
-    except (ValueError, TypeError, OverflowError) as cause:
-        raise PlainFormError("ticks: needs pairs of counts") from cause
-    return header, records, runs, meta["complete"]
+        return np.array(pairs, dtype=np.int64).reshape(-1, 2)
+    except OverflowError as cause:
+        raise PlainFormError("ticks: a count is too large") from cause
 
 
 def _member(archive: zipfile.ZipFile, key: str) -> Any:

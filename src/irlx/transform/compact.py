@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dposv
 
+from irlx.transform.metric import rows_over, solved, within_basis
 from irlx.transform.precision import QP_EXCESS
 from irlx.transform.qp.interval import IntervalSolver
 from irlx.transform.qp.solver import QpSolver
@@ -25,7 +26,7 @@ class StepProblem:
     """One Newton step written out, so that it can be inspected apart from being solved.
 
     `jacobian` J (m, n); `twist` e (m,) what is left to the demanded pose; `gradient` g (n,) and
-    `hessian` diagonal of H (n,) of the criterion; `lower`, `upper` (n,) bounds of d.
+    `hessian` H of the criterion, its diagonal (n,) or all of it (n, n); `lower`, `upper` (n,) bounds of d.
     """
 
     jacobian: Array
@@ -59,9 +60,9 @@ def free_step(problem: StepProblem) -> Array:
 
     Raises numpy.linalg.LinAlgError where J has lost its rank.
     """
-    scaled = problem.jacobian / problem.hessian
+    scaled = rows_over(problem.jacobian, problem.hessian)
     k = solve_gram(scaled @ problem.jacobian.T, problem.twist + scaled @ problem.gradient)
-    return np.asarray(scaled.T @ k - problem.gradient / problem.hessian)
+    return np.asarray(scaled.T @ k - solved(problem.hessian, problem.gradient))
 
 
 def path_step(problem: StepProblem) -> Array:
@@ -69,7 +70,7 @@ def path_step(problem: StepProblem) -> Array:
 
     Raises numpy.linalg.LinAlgError where J has lost its rank.
     """
-    scaled = problem.jacobian / problem.hessian
+    scaled = rows_over(problem.jacobian, problem.hessian)
     return np.asarray(scaled.T @ solve_gram(scaled @ problem.jacobian.T, problem.twist))
 
 
@@ -110,5 +111,5 @@ def null_space_rows(problem: StepProblem) -> Array:
         return np.zeros((n, 0))
     orthonormal, _ = np.linalg.qr(problem.jacobian.T, mode="complete")
     basis = orthonormal[:, m:]
-    factor = np.linalg.cholesky((basis.T * problem.hessian) @ basis)
+    factor = np.linalg.cholesky(within_basis(problem.hessian, basis))
     return np.asarray(np.linalg.solve(factor, basis.T).T)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.transform.compact import StepProblem, path_step, within
+from irlx.transform.metric import times
 
 Array = NDArray[np.float64]
 
@@ -51,13 +52,13 @@ class CriterionPace:
     def share(self, twist: Array, hessian: Array, d: Array) -> float:
         """Share of the null-space part of `d` (n,) to take; exactly 1 where all of it is right.
 
-        `twist` (6,) is what is left to the pose before the step, `hessian` the diagonal of H (n,).
+        `twist` (6,) is what is left to the pose before the step, `hessian` H, (n,) or (n, n).
         """
         if self._asked is None or self._taken is None or not _nearly_met(twist):
             return 1.0
         if self._taken.shape != d.shape:
             return 1.0
-        weighted = hessian * self._taken
+        weighted = times(hessian, self._taken)
         length = float(self._taken.dot(weighted))
         bend = float(weighted.dot(self._asked - d))
         if length <= 0.0 or bend <= 0.0:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from irlx.robot.kinematics import Kinematics
 from irlx.transform.compact import StepProblem
+from irlx.transform.metric import rows_over
 
 Array = NDArray[np.float64]
 
@@ -33,7 +34,7 @@ def damped_step(problem: StepProblem, reach: float) -> Array:
     """
     row_scale = np.array([1.0 / reach] * 3 + [1.0] * 3)
     rows = problem.jacobian * row_scale[:, None]
-    scaled = rows / problem.hessian
+    scaled = rows_over(rows, problem.hessian)
     gram = scaled @ rows.T
     # Without any joint that moves the Gram matrix is zero, and so is the step.
     damping = _DAMPING**2 * float(np.trace(gram)) or 1.0

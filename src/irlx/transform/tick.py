@@ -15,6 +15,7 @@ from irlx.robot.kinematics import Kinematics
 from irlx.transform.compact import Step, StepProblem, bounded_step, free_step, within
 from irlx.transform.criteria.criterion import Criterion
 from irlx.transform.criterion_pace import STRAIGHT, CriterionPace
+from irlx.transform.metric import reduced, solved
 from irlx.transform.nearest import Nearest, damped_step, nearest_in_bounds, scaled_singular_values
 from irlx.transform.precision import (
     AT_BOUND,
@@ -94,6 +95,9 @@ class TickSolver:
         `thorough` a tick counts as unsolved where Newton's steps find nothing; what is left then is not
         looked for.
         """
+        begun = problem.criterion.begun(problem.q)
+        if begun is not problem.criterion:
+            problem = problem._replace(criterion=begun)
         start = np.zeros(problem.q.size) if seed is None else seed
         found = self._undisturbed(problem, start)
         if isinstance(found, TickSolution):
@@ -130,7 +134,11 @@ class TickSolver:
         joints = q.size
         inverse = criterion.inverse_hessian()
         some_frozen = np.count_nonzero(free) < joints
+        whole_matrix = inverse.ndim == 2
         if some_frozen:
+            if whole_matrix:
+                # Without its frozen joints a full matrix has another inverse.
+                return whole
             inverse = inverse * free
         settling, pace = Settling(), CriterionPace()
         for iteration in range(1, self._max_iterations + 1):
@@ -138,7 +146,7 @@ class TickSolver:
             pull = criterion.pull(q, whole)
             if some_frozen:
                 pull = pull * free
-            scaled = jacobian * inverse
+            scaled = jacobian.dot(inverse) if whole_matrix else jacobian * inverse
             gram = scaled.dot(jacobian.T)
             _, k, failed = dposv(gram, twist - jacobian.dot(pull))
             d = pull + k.dot(scaled)
@@ -178,7 +186,7 @@ class TickSolver:
             step = self._step(step_problem, d_free)
             if step is None:
                 return TickStatus.NO_STEP
-            pull = step_problem.gradient / step_problem.hessian
+            pull = solved(step_problem.hessian, step_problem.gradient)
             done = settling.after(_length(step.d), _length(pull), _met(step_problem.twist))
             done = done or (iteration == self._max_iterations and settling.calm > 0)
             d = step.d if done else pace.shape(step_problem, step.d)
@@ -204,7 +212,7 @@ class TickSolver:
             jacobian[:, free],
             twist,
             problem.criterion.gradient(problem.q, whole)[free],
-            problem.criterion.hessian()[free],
+            reduced(problem.criterion.hessian(), free),
             (problem.bounds.lower - whole)[free],
             (problem.bounds.upper - whole)[free],
         )

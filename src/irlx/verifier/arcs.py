@@ -108,6 +108,11 @@ class ArcWay:
         through = course.turns_through_via
         self._turns = [Turn(start, via), Turn(via, goal)] if through else [Turn(start, goal)]
 
+    @property
+    def length(self) -> float:
+        """Length of the way, m."""
+        return self._shape.travel / self._shape.flatness
+
     def deviation(self, positions: Floats, rotations: Floats) -> PathDeviation:
         """Deviation of the next rows (positions (R, 3), rotations (R, 3, 3)) from the arc."""
         if self._chord is not None:
@@ -116,9 +121,12 @@ class ArcWay:
         angles = self._rounds(shape.angles(positions))
         inside = np.clip(angles, 0.0, shape.travel)
         off_circle = np.linalg.norm(positions - shape.points(inside), axis=1)
-        # Of rows more than a whole turn apart nobody can tell how many turns they make.
-        travel = shape.travel if self._most_step < WHOLE_TURN else float(inside[-1])
-        off_turn = self._off_turn(inside, rotations)
+        # Of rows more than a whole turn apart nobody can tell how many turns they make, nor what share of
+        # the way that is.
+        if self._most_step < WHOLE_TURN:
+            travel, off_turn = shape.travel, self._off_turn(inside, rotations)
+        else:
+            travel, off_turn = float(inside[-1]), np.zeros(len(inside))
         return PathDeviation(off_circle, off_turn, inside / shape.flatness, travel / shape.flatness, False)
 
     def _off_turn(self, inside: Floats, rotations: Floats) -> Floats:

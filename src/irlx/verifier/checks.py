@@ -59,6 +59,7 @@ CHECKS = (
     "programmed time",
     "reconfiguration position",
     "reconfiguration orientation",
+    "reconfiguration speed",
     "cyclic closure",
 )
 """Names of all checks in the order of a report; every report has all of them."""
@@ -85,14 +86,18 @@ class RowChecks(Protocol):
 
 
 def verify_stream(
-    stream: JointStream, robot: RobotDescription | None, limits: JointLimits | None = None
+    stream: JointStream,
+    robot: RobotDescription | None,
+    limits: JointLimits | None = None,
+    may_lack_blocks: bool = False,
 ) -> Report:
     """Check a stream in memory against itself, its blocks, and the robot it is meant for; see `verify_scans`.
 
     With `limits` those that the stream gives as the robot's own must be these.
     """
     reference = None if robot is None else Reference(robot, limits)
-    return verify_scans(stream.scan, reference, stream.header.program_name)
+    name = stream.header.program_name
+    return verify_scans(stream.scan, reference, name, may_lack_blocks=may_lack_blocks)
 
 
 def verify_scans(
@@ -101,6 +106,7 @@ def verify_scans(
     name: str,
     program: ProgramCheck | None = None,
     is_file: bool = False,
+    may_lack_blocks: bool = False,
 ) -> Report:
     """Check a stream that can be scanned again and again, in portions: memory does not grow with its length.
 
@@ -108,7 +114,8 @@ def verify_scans(
     of the samples, paths are rebuilt from the blocks, tool poses come from a forward kinematics of
     the verifier's own. What cannot be checked - geometry without a robot, moves without blocks,
     anything where the ticks have gaps - is 'not checked', with the reason. A damaged file fails the check
-    'file'; raises StreamError where there is no file to read.
+    'file'; raises StreamError where there is no file to read. Only a stream that `may_lack_blocks`, its
+    format having no place for them, may have none.
     """
     try:
         outline = outline_of(scans)
@@ -125,15 +132,15 @@ def verify_scans(
         check_ticks(outline),
         check_finite(outline),
         check_robot(header, reference),
-        check_robot_limits(header, reference),
     ]
+    found.append(check_robot_limits(header, reference, found[-1].status == FAILED))
     why_not = _unreadable(outline, found)
     if why_not:
         return _report(found, why_not, subject)
     # Values too large to square are found by what follows: infinite, or no number, they pass no comparison.
     with np.errstate(all="ignore"):
         of_robot = next(check for check in found if check.name == "robot")
-        found += _judged(scans, outline, of_robot, reference, program)
+        found += _judged(scans, outline, of_robot, reference, program, may_lack_blocks)
     return _report(found, "", subject)
 
 
@@ -143,12 +150,13 @@ def _judged(
     of_robot: Check,
     reference: Reference | None,
     program: ProgramCheck | None,
+    may_lack_blocks: bool,
 ) -> list[Check]:
     """Checks of blocks and rows, the stream being whole enough for them."""
     robot = reference.robot if reference is not None and of_robot.status == OK else None
     start = None if robot is None or reference is None else reference.start
     evidence = Evidence(outline, robot, start)
-    of_blocks = check_blocks(outline)
+    of_blocks = check_blocks(outline, may_lack_blocks)
     no_blocks = "the check 'blocks' failed" if of_blocks.status == FAILED else of_blocks.detail
     no_robot = of_robot.detail if of_robot.status == NOT_CHECKED else "the check 'robot' failed"
     no_robot = "" if robot is not None else no_robot

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from irlx.blocks import (
     Block,
+    CriterionBlock,
     CyclicBlock,
     FreezeBlock,
     JointTarget,
@@ -19,13 +20,14 @@ from irlx.blocks import (
 from irlx.promises import CLOSURE, RETURN, TOUCH
 from irlx.verifier.evidence import Evidence, Pose
 from irlx.verifier.moves import MoveRows
-from irlx.verifier.report import Check
+from irlx.verifier.report import NOT_CHECKED, Check
 from irlx.verifier.rotations import angle_between
 from irlx.verifier.rows import Rows, Stretch
 from irlx.verifier.way import course_of
 
 _LED_AWAY = (
-    "a limit was active, or a RECONFIGURATION, a frozen joint or joint values led away from the posture"
+    "a limit was met, or a RECONFIGURATION, a frozen joint, a criterion or joint values led away"
+    " from the posture"
 )
 
 
@@ -41,9 +43,10 @@ class _Return:
 class ClosureChecks:
     """Posture difference at every return to the pose of CYCLICSTART, by moves to a pose.
 
-    A return whose end was governed by a limit is reported, not judged; so is one after what leads away
-    from the posture, which comes back no faster than the joints can: a RECONFIGURATION, which may even have
-    led to another branch of postures, frozen joints, a move to joint values.
+    A return that closes is a good one. One that does not is reported, not judged, where a joint is at a limit
+    at its end that kept it from its value, or met a position limit on the way; and after what leads away from
+    the posture, which comes back no faster than the joints can: a RECONFIGURATION, which may even have
+    led to another branch of postures, frozen joints, an added criterion, a move to joint values.
     """
 
     def __init__(self, evidence: Evidence) -> None:
@@ -51,64 +54,94 @@ class ClosureChecks:
         self._tally = evidence.tally("cyclic closure", "rad|m")
         self._returns = _possible_returns(evidence)
         self._starts = {found.start for found in self._returns.values()}
-        self._poses: dict[int, Pose] = {}
+        self._poses: dict[int, list[Pose]] = {}
+        self._moves = {move.block.id: move for move in evidence.moves if move.last > move.start}
         self._at_start: Pose | None = None
         self._count, self._judged = 0, 0
-        self._active_last, self._moved_before = False, False
+        joints = evidence.outline.header.joints
+        self._active_last, self._moved_before = np.zeros(joints, dtype=np.bool_), False
+        self._held_since: dict[int, bool] = dict.fromkeys(self._starts, False)
 
     def take(self, rows: Rows) -> None:
         """Add a portion."""
-        for start in sorted(self._starts - self._poses.keys()):
+        for start in sorted(self._starts):
             place = rows.place(start)
             if place is not None:
-                self._poses[start] = rows.positions[place].copy(), rows.rotations[place].copy()
+                own = rows.positions[place].copy(), rows.rotations[place].copy()
+                self._poses.setdefault(start, []).append(own)
+        self._watch_positions(rows)
         for stretch in rows.stretches:
-            found = self._returns.get(stretch.block)
-            if found is None:
+            move, found = self._moves.get(stretch.block), self._returns.get(stretch.block)
+            if move is None or (found is None and move.last not in self._starts):
                 continue
-            self._watch_limits(rows, stretch)
             if stretch.begins or self._at_start is None:
                 before = stretch.before.start
                 self._at_start = rows.positions[before].copy(), rows.rotations[before].copy()
+            if found is not None:
+                self._watch_limits(rows, stretch)
             if stretch.ends:
-                self._end(int(stretch.rows[-1]), found, self._at_start)
+                goal = course_of(self._evidence, move, self._at_start).goal
+                if move.last in self._starts and goal is not None:
+                    # Where the tool was told to stand counts as where it stands.
+                    self._poses.setdefault(move.last, []).append(goal)
+                if found is not None and goal is not None:
+                    self._end(int(stretch.rows[-1]), found, goal)
+
+    def _watch_positions(self, rows: Rows) -> None:
+        """Keep whether a joint met a position limit since each CYCLICSTART, which may have led it away."""
+        if all(self._held_since.values()):
+            return
+        lower, upper = self._evidence.limits.bounds("position", rows.first, len(rows))
+        reach = TOUCH * np.maximum(1.0, np.abs(rows.q))
+        met = (((rows.q >= upper - reach) | (rows.q <= lower + reach)) & (lower < upper)).any(axis=1)
+        if met.any():
+            last = rows.first + int(np.flatnonzero(met)[-1])
+            for start in self._held_since:
+                self._held_since[start] = self._held_since[start] or last > start
 
     def _watch_limits(self, rows: Rows, stretch: Stretch) -> None:
-        """Keep whether a limit is reached in the last row that moves, or in the one after."""
+        """Keep which joints are at a limit in the last row that moves, or in the one after."""
         if stretch.begins:
-            self._active_last, self._moved_before = False, False
+            self._active_last, self._moved_before = np.zeros_like(self._active_last), False
         moved = (rows.postures[stretch.after] != rows.postures[stretch.before]).any(axis=1)
         if not moved.any():
             if self._moved_before:
-                self._active_last = self._active_last or bool(self._active(rows, stretch, 0, 1).any())
+                self._active_last = self._active_last | self._active(rows, stretch, 0, 1)
             self._moved_before = False
             return
         row = int(np.flatnonzero(moved)[-1])
-        self._active_last = bool(self._active(rows, stretch, row, row + 2).any())
+        self._active_last = self._active(rows, stretch, row, row + 2)
         self._moved_before = row == len(moved) - 1
 
     def _active(self, rows: Rows, stretch: Stretch, start: int, stop: int) -> NDArray[np.bool_]:
+        """Joints (n,) that are at a limit in one of some rows; who may not move at all is at none."""
         part = slice(stretch.part.start + start, min(stretch.part.start + stop, stretch.part.stop))
         first, count = rows.first + part.start, part.stop - part.start
-        active = np.zeros(count, dtype=np.bool_)
+        active = np.zeros(rows.q.shape[1], dtype=np.bool_)
         for kind, values in (("position", rows.q), ("speed", rows.qd), ("acceleration", rows.qdd)):
             lower, upper = self._evidence.limits.bounds(kind, first, count)
             here = values[part]
             reach = TOUCH * np.maximum(1.0, np.abs(here))
-            active |= ((here >= upper - reach) | (here <= lower + reach)).any(axis=1)
+            at_limit = (here >= upper - reach) | (here <= lower + reach)
+            active |= (at_limit & (lower < upper)).any(axis=0)
         return active
 
-    def _end(self, row: int, found: _Return, before: Pose) -> None:
-        """Judge the end of a move that stood at the pose `before`, if its goal is that of CYCLICSTART."""
-        evidence = self._evidence
-        goal = course_of(evidence, found.move, before).goal
-        if goal is None or not _same_pose(goal, self._poses[found.start]):
+    def _end(self, row: int, found: _Return, goal: Pose) -> None:
+        """Judge the end of a move to `goal`, if that is the pose of CYCLICSTART.
+
+        A limit excuses the joints that it kept from their values, not others.
+        """
+        if not any(_same_pose(goal, pose) for pose in self._poses[found.start]):
             return
-        difference = np.abs(evidence.posture(row) - evidence.posture(found.start))[None]
-        judged = not (found.led_away or self._active_last)
+        evidence = self._evidence
+        difference = np.abs(evidence.posture(row) - evidence.posture(found.start))
+        held = bool((self._active_last & (difference > CLOSURE)).any()) or self._held_since[found.start]
+        closed = bool((difference <= CLOSURE).all())
+        judged = closed or not (found.led_away or held)
         self._count += 1
         self._judged += judged
-        self._tally.add(np.array([row]), difference, CLOSURE, judged & ~(difference <= CLOSURE))
+        offends = judged & ~(difference <= CLOSURE)
+        self._tally.add(np.array([row]), difference[None], CLOSURE, offends[None])
 
     def checks(self) -> list[Check]:
         """Cyclic closure."""
@@ -116,7 +149,8 @@ class ClosureChecks:
             self._tally.detail = (
                 f"{self._count - self._judged} of {self._count} returns not judged: {_LED_AWAY}"
             )
-        return [self._tally.check()]
+        found = self._tally.check()
+        return [replace(found, status=NOT_CHECKED) if self._count and not self._judged else found]
 
 
 def _possible_returns(evidence: Evidence) -> dict[int, _Return]:
@@ -126,11 +160,14 @@ def _possible_returns(evidence: Evidence) -> dict[int, _Return]:
     found: dict[int, _Return] = {}
     start: int | None = None
     led_away = False
+    criteria: set[str] = set()
     for record in evidence.outline.records:
         block = record.block
         if isinstance(block, CyclicBlock):
             start, led_away = record.tick if block.active else None, False
-        led_away = led_away or _leads_away(block)
+        if isinstance(block, CriterionBlock):
+            criteria = criteria - {block.name} | ({block.name} if block.choice is not None else set())
+        led_away = led_away or bool(criteria) or _leads_away(block)
         if start is None or _reconfigures(block) or not isinstance(block, MoveBlock):
             continue
         move = moves[block.id]
@@ -141,7 +178,10 @@ def _possible_returns(evidence: Evidence) -> dict[int, _Return]:
 
 def _leads_away(block: Block) -> bool:
     to_joints = isinstance(block, MoveBlock) and isinstance(block.target, JointTarget)
-    return to_joints or _reconfigures(block) or (isinstance(block, FreezeBlock) and bool(block.joints))
+    added = isinstance(block, MoveBlock) and bool(block.criteria)
+    return (
+        to_joints or added or _reconfigures(block) or (isinstance(block, FreezeBlock) and bool(block.joints))
+    )
 
 
 def _reconfigures(block: Block) -> bool:

@@ -12,7 +12,7 @@ from irlx.robot.description import RobotDescription
 from irlx.streams.joint_stream import Floats
 from irlx.verifier.forward import forward
 from irlx.verifier.limits import LimitsInForce, limits_in_force
-from irlx.verifier.moves import MoveRows, carries_blocks, moves_of
+from irlx.verifier.moves import MoveRows, moves_of
 from irlx.verifier.outline import Outline
 from irlx.verifier.rotations import from_quaternion
 from irlx.verifier.tally import Tally
@@ -35,11 +35,6 @@ class Evidence:
     outline: Outline
     robot: RobotDescription | None
     start: Floats | None = None
-
-    @cached_property
-    def has_blocks(self) -> bool:
-        """Whether the stream records its moves."""
-        return carries_blocks(self.outline)
 
     @cached_property
     def moves(self) -> list[MoveRows]:

@@ -48,9 +48,10 @@ class JointMoveChecks:
         start, end = self._evidence.posture(move.start), self._evidence.posture(move.last)
         off, along = joint_line_deviation(start, end, rows.q[stretch.part])
         self._straight.add(stretch.rows, off, JOINT_LINE)
-        before = np.concatenate(([0.0 if stretch.begins else self._along], along[:-1]))
-        self._progress.add(stretch.rows, before - along, JOINT_LINE)
-        self._along = float(along[-1])
+        # Against the furthest row so far: small steps back must not add up.
+        furthest = np.maximum.accumulate(np.concatenate(([0.0 if stretch.begins else self._along], along)))
+        self._progress.add(stretch.rows, furthest[:-1] - along, JOINT_LINE)
+        self._along = float(furthest[-1])
 
     def checks(self) -> list[Check]:
         """Straightness, progress, joint goals."""

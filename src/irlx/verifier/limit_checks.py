@@ -57,7 +57,7 @@ class LimitChecks:
         self._tallies = {kind: evidence.tally(f"{kind} limits", unit) for kind, unit in _UNITS.items()}
         allowances = rounding_allowance(np.array([outline.largest]), outline.header.dt)
         self._allowance = dict(zip(("speed", "acceleration"), allowances, strict=True))
-        if not evidence.has_blocks:
+        if not outline.records and outline.ids.any():
             for tally in self._tallies.values():
                 tally.detail = "the robot's own limits only: the stream carries no blocks"
 

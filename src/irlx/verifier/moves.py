@@ -54,9 +54,12 @@ def moves_of(outline: Outline) -> list[MoveRows]:
     return moves
 
 
-def check_blocks(outline: Outline) -> Check:
-    """Every sample belongs to a recorded move, which begins right after the row it was recorded at."""
-    if not carries_blocks(outline):
+def check_blocks(outline: Outline, may_lack_blocks: bool) -> Check:
+    """Every sample belongs to a recorded motion; each block begins where the one before it came to its end.
+
+    Only a format that has no place for blocks may lack them.
+    """
+    if may_lack_blocks and not outline.records:
         return Check("blocks", NOT_CHECKED, detail="the stream carries no blocks")
     found = _misfit(outline)
     if found is None:
@@ -64,44 +67,28 @@ def check_blocks(outline: Outline) -> Check:
     return Check("blocks", FAILED, detail=f"at tick {found[0]}: {found[1]}")
 
 
-def carries_blocks(outline: Outline) -> bool:
-    """Whether moves are recorded; some formats carry samples only."""
-    motions = MoveBlock | ReconfigureBlock
-    recorded = any(isinstance(record.block, motions) for record in outline.records)
-    return recorded or not outline.ids.any()
-
-
 def _misfit(outline: Outline) -> tuple[int, str] | None:
     """Tick and words of the first place where samples and block records contradict each other."""
     joints, rows = outline.header.joints, outline.rows
     found = list(outline.segments())
+    lasts = {identity: last for identity, _, last in found}
     begins: dict[int, int] = {}
-    previous = 0
+    standing = lasts.get(0, 0)
     for due, record in enumerate(outline.records, 1):
-        reason = _wrong_numbers(record.block, joints)
+        block = record.block
+        reason = _wrong_numbers(block, joints)
         if reason:
-            return record.tick, f"block {record.block.id}: {reason}"
-        if record.tick < previous:
-            return record.tick, f"block {record.block.id} begins at tick {record.tick}, out of order"
-        if record.block.id != due:
-            return record.tick, f"block {record.block.id} stands where {due} is due: one is missing or added"
-        previous = record.tick
-        moves = isinstance(record.block, MoveBlock | ReconfigureBlock)
-        begins[record.block.id] = record.tick if moves else -1
-    if previous >= rows:
-        late = f"a block begins at tick {previous}, but the samples end at {rows - 1}"
-        return _misplaced(found, begins) or (previous, late)
-    return _misplaced(found, begins) or _in_motion(outline)
-
-
-def _in_motion(outline: Outline) -> tuple[int, str] | None:
-    """First block that begins while another one still moves."""
-    ends = set(outline.lasts.tolist())
-    for record in outline.records:
-        if record.tick not in ends:
-            moving = outline.block_at(record.tick)
-            return record.tick, f"block {record.block.id} begins in the midst of block {moving}"
-    return None
+            return record.tick, f"block {block.id}: {reason}"
+        if block.id != due:
+            return record.tick, f"block {block.id} stands where {due} is due: one is missing or added"
+        moves = isinstance(block, MoveBlock | ReconfigureBlock)
+        begins[block.id] = record.tick if moves else -1
+        if record.tick != standing:
+            late = f" (the samples end at {rows - 1})" if record.tick >= rows else ""
+            words = f"block {block.id} was recorded at tick {record.tick}{late}"
+            return record.tick, f"{words}, but the robot came to rest at {standing}"
+        standing = lasts.get(block.id, standing) if moves else standing
+    return _misplaced(found, begins)
 
 
 def _misplaced(found: list[tuple[int, int, int]], begins: dict[int, int]) -> tuple[int, str] | None:

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from irlx.diagnostics import Diagnostic
+from irlx.promises import LONGEST_TICK, SHORTEST_TICK
 from irlx.streams.error import StreamError
 from irlx.streams.joint_stream import BlockRecord, Floats, Integers, StreamHeader
 from irlx.streams.scan import RowBatch, ScanItem, StreamEnd
@@ -178,6 +179,12 @@ def check_ticks(outline: Outline) -> Check:
     """Ticks count 0, 1, 2, .. without a gap."""
     if outline.rows == 0:
         return Check("ticks", FAILED, detail="the stream has no samples")
+    dt = outline.header.dt
+    if not SHORTEST_TICK <= dt <= LONGEST_TICK:
+        detail = (
+            f"a tick of {dt * 1e3:g} ms; {SHORTEST_TICK * 1e3:g} to {LONGEST_TICK * 1e3:g} ms are possible"
+        )
+        return Check("ticks", FAILED, detail=detail)
     found = outline.tick_fault
     if found is None and outline.damage is not None and outline.damage.code == "IRL703":
         return Check("ticks", FAILED, detail=outline.damage.message)

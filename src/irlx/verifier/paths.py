@@ -57,6 +57,21 @@ class LineWay:
         """Angle of the turn, rad."""
         return float(np.linalg.norm(self._turns[0]))
 
+    @property
+    def distance(self) -> float:
+        """Distance between the two poses, m."""
+        return float(np.linalg.norm(self._step))
+
+    @property
+    def by_angle(self) -> bool:
+        """Whether the angle gives the parameter of the way, and not the distance."""
+        return not self.distance > TURN_RULES * self.angle
+
+    @property
+    def length(self) -> float:
+        """Length of the way: m, or rad where it goes by the angle."""
+        return self.angle if self.by_angle else self.distance
+
     def deviation(self, positions: Floats, rotations: Floats) -> PathDeviation:
         """Deviation of the next rows (R, 3), (R, 3, 3) from the way."""
         found = [self._from(turn, positions, rotations) for turn in self._turns]
@@ -64,13 +79,12 @@ class LineWay:
         return found[best]
 
     def _from(self, turn: Floats, positions: Floats, rotations: Floats) -> PathDeviation:
-        length, angle = float(np.linalg.norm(self._step)), float(np.linalg.norm(turn))
+        angle = float(np.linalg.norm(turn))
         offsets = positions - self._start[0]
         turned = self._start[1].T @ rotations
-        by_angle = not length > TURN_RULES * angle
-        if not by_angle:
-            scale = length
-            parameter = offsets @ self._step / length**2
+        if not self.by_angle:
+            scale = self.distance
+            parameter = offsets @ self._step / scale**2
         elif angle > 0.0:
             scale = angle
             angles = _angles_about(turn / angle, turned)
@@ -82,7 +96,7 @@ class LineWay:
         axis = turn / angle if angle > 0.0 else np.array([1.0, 0.0, 0.0])
         off_line = np.linalg.norm(offsets - inside[:, None] * self._step, axis=1)
         off_turn = angle_between(turned, about_axis(axis, inside * angle))
-        return PathDeviation(off_line, off_turn, inside * scale, scale, by_angle)
+        return PathDeviation(off_line, off_turn, inside * scale, scale, self.by_angle)
 
 
 class Turn:

@@ -15,16 +15,23 @@ from irlx.verifier.outline import Outline
 _NOTHING = object()
 
 
+class Unanswerable(Exception):
+    """A program asked what no stream can answer: its blocks from here on are not known."""
+
+
 def blocks_differ(outline: Outline, given: Iterable[Block]) -> str:
     """Words on the first block of a stream that is not the one that the program gives, or ''.
 
-    A stream that ended early may have fewer. `given` is asked for no more blocks than it takes to tell; that
-    it raises an error is a difference only where the stream goes on.
+    A stream that ended early may have fewer; behind an `Unanswerable` question nothing is compared.
+    `given` is asked for no more blocks than it takes to tell; that it raises an error is a difference only
+    where the stream goes on.
     """
     source = iter(given)
     for record in outline.records:
         try:
             due = next(source, None)
+        except Unanswerable:
+            return ""
         except IrlxError as error:
             return f"{_named(record)}: the program ends before it, in {error.diagnostics[0].code}"
         if due is None:
@@ -40,6 +47,8 @@ def _missing(outline: Outline, source: Iterator[Block]) -> str:
     last = outline.rows - 1
     try:
         block = next(source, None)
+    except Unanswerable:
+        return ""
     except IrlxError as error:
         return f"at tick {last}, the end: the program ends in {error.diagnostics[0].code}"
     if block is None:

@@ -43,8 +43,10 @@ def check_robot(header: StreamHeader, reference: Reference | None) -> Check:
     return Check("robot", OK)
 
 
-def check_robot_limits(header: StreamHeader, reference: Reference | None) -> Check:
-    """The limits that the stream gives as the robot's own are those of the cell."""
+def check_robot_limits(header: StreamHeader, reference: Reference | None, other_robot: bool) -> Check:
+    """The limits that the stream gives as the robot's own are those of the cell, which has that robot."""
+    if other_robot:
+        return Check("robot limits", NOT_CHECKED, detail="the check 'robot' failed")
     if reference is None or reference.limits is None:
         return Check("robot limits", NOT_CHECKED, detail="no cell is given")
     for kind in ("position", "speed", "acceleration"):
@@ -72,8 +74,11 @@ class ToolChecks:
         """Add a portion."""
         apart = np.linalg.norm(rows.tool[:, :3] - rows.positions[1:], axis=1)
         self._position.add(rows.rows, apart, TOOL_POSITION)
-        turned = angle_between(from_quaternion(rows.tool[:, 3:]), rows.rotations[1:])
-        self._orientation.add(rows.rows, turned, TOOL_ORIENTATION)
+        quaternions = rows.tool[:, 3:]
+        turned = angle_between(from_quaternion(quaternions), rows.rotations[1:])
+        # Of some orientations a quaternion of any length gives the matrix.
+        odd = np.abs(np.linalg.norm(quaternions, axis=1) - 1.0)
+        self._orientation.add(rows.rows, np.maximum(turned, odd), TOOL_ORIENTATION)
 
     def checks(self) -> list[Check]:
         """Tool position and orientation."""

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from irlx.blocks import ReconfigureBlock
-from irlx.promises import PATH_ORIENTATION, PATH_POSITION
+from irlx.promises import PATH_ORIENTATION, PATH_POSITION, PROGRAM_EXCESS
 from irlx.verifier.evidence import Evidence, Pose
 from irlx.verifier.report import Check
 from irlx.verifier.rotations import angle_between
-from irlx.verifier.rows import Rows
+from irlx.verifier.rows import Rows, Stretch
 
 
 class ReconfigurationChecks:
@@ -20,6 +20,14 @@ class ReconfigurationChecks:
         self._ids = {block.id for block in blocks if isinstance(block, ReconfigureBlock)}
         self._position = evidence.tally("reconfiguration position", "m")
         self._orientation = evidence.tally("reconfiguration orientation", "rad")
+        self._speed = evidence.tally("reconfiguration speed", "rad/s|m/s")
+        self._laws = {
+            record.block.id: record.block.law
+            for record in evidence.outline.records
+            if isinstance(record.block, ReconfigureBlock)
+        }
+        self._slides = np.array([unit == "m" for unit in evidence.outline.header.joint_units])
+        self._limits = evidence.limits
         self._held: Pose | None = None
 
     def take(self, rows: Rows) -> None:
@@ -34,7 +42,18 @@ class ReconfigurationChecks:
             off = np.linalg.norm(positions - self._held[0], axis=1)
             self._position.add(stretch.rows, off, PATH_POSITION)
             self._orientation.add(stretch.rows, angle_between(self._held[1], rotations), PATH_ORIENTATION)
+            self._add_speeds(rows, stretch)
+
+    def _add_speeds(self, rows: Rows, stretch: Stretch) -> None:
+        """Joints without a speed limit go at that of the tool's turn, or of the tool where they slide."""
+        law = self._laws[stretch.block]
+        lower, upper = self._limits.bounds("speed", int(stretch.rows[0]), len(stretch.rows))
+        unlimited = np.isinf(lower) | np.isinf(upper)
+        bound = np.broadcast_to(np.where(self._slides, law.speed, law.speed_ori), unlimited.shape)
+        speeds = np.abs(rows.qd[stretch.part])
+        offends = unlimited & ~(speeds <= bound * (1.0 + PROGRAM_EXCESS))
+        self._speed.add(stretch.rows, speeds, bound, offends, np.where(unlimited, speeds / bound, -np.inf))
 
     def checks(self) -> list[Check]:
-        """Tool position and orientation during RECONFIGURATION."""
-        return [self._position.check(), self._orientation.check()]
+        """Tool position and orientation during RECONFIGURATION, speed of the joints."""
+        return [self._position.check(), self._orientation.check(), self._speed.check()]

@@ -104,7 +104,11 @@ def rows_of(scans: Scans, outline: Outline, robot: RobotDescription | None) -> I
     done = 0
     earlier: tuple[Floats, Floats] | None = None
     poses: tuple[Floats, Floats] | None = None
-    for batch in _portions(scans()):
+    for portion in _portions(scans()):
+        # A file that grows meanwhile is judged as it was.
+        batch = portion.part(slice(0, outline.rows - done))
+        if not len(batch.ticks):
+            return
         q = batch.q
         before, slower = (q[:1], np.zeros_like(q[:1])) if earlier is None else earlier
         postures = np.concatenate([before, q])

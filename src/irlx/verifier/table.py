@@ -25,6 +25,11 @@ def render_table(report: Report) -> str:
     )
 
 
+def printable(text: str) -> str:
+    """The text with control characters, which names in a stream may hold, written as escapes."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+
+
 def verdict(report: Report) -> str:
     """One line: how many checks passed, failed, could not be made, and had no case."""
     parts = []

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import deque
+
 import numpy as np
 
 from irlx.blocks import MoveKind
@@ -16,6 +18,7 @@ from irlx.promises import (
 from irlx.streams.joint_stream import Floats
 from irlx.verifier.evidence import Evidence, Pose
 from irlx.verifier.moves import MoveRows
+from irlx.verifier.paths import LineWay
 from irlx.verifier.report import Check
 from irlx.verifier.rotations import angle_between
 from irlx.verifier.rows import Rows, Stretch
@@ -32,7 +35,7 @@ class ToolMoveChecks:
     def __init__(self, evidence: Evidence) -> None:
         self._evidence = evidence
         self._moving = {move.block.id: move for move in evidence.moves if move.last > move.start}
-        self._resting = [move for move in evidence.moves if move.last == move.start]
+        self._resting = deque(move for move in evidence.moves if move.last == move.start)
         self._dt = evidence.outline.header.dt
         self._goal = evidence.tally("goal position", "m"), evidence.tally("goal orientation", "rad")
         self._path = evidence.tally("path position", "m"), evidence.tally("path orientation", "rad")
@@ -41,28 +44,34 @@ class ToolMoveChecks:
         self._acceleration = evidence.tally("programmed acceleration", "m/s2|rad/s2")
         self._time = evidence.tally("programmed time", "s")
         self._course: Course | None = None
-        self._along = np.zeros(2)
-        self._last_moving = 0
+        self._along, self._furthest = np.zeros(2), 0.0
         self._skipped: set[int] = set()
 
     def take(self, rows: Rows) -> None:
         """Add a portion."""
         while self._resting and (place := rows.place(self._resting[0].start)) is not None:
-            move = self._resting.pop(0)
-            pose = rows.positions[place], rows.rotations[place]
-            self._add_goal(course_of(self._evidence, move, pose), pose)
+            self._add_resting(self._resting.popleft(), (rows.positions[place], rows.rotations[place]))
         for stretch in rows.stretches:
             move_here = self._moving.get(stretch.block)
             if move_here is not None:
                 self._add(rows, stretch, move_here)
 
+    def _add_resting(self, move: MoveRows, pose: Pose) -> None:
+        """A move without rows must have no way to go."""
+        course = course_of(self._evidence, move, pose)
+        self._add_goal(course, pose)
+        if course.way is not None and move.finished:
+            row, missing = np.array([move.last]), np.array([course.way.length])
+            self._progress.add(row, missing, PATH_POSITION, rank=missing / PATH_POSITION)
+
     def _add(self, rows: Rows, stretch: Stretch, move: MoveRows) -> None:
         if stretch.begins or self._course is None:
             before = stretch.before.start
             self._course = course_of(self._evidence, move, (rows.positions[before], rows.rotations[before]))
-            self._along = np.zeros(2)
+            self._along, self._furthest = np.zeros(2), 0.0
         course = self._course
-        self._add_time(rows, stretch, move)
+        if stretch.ends and move.finished:
+            self._add_time(rows, stretch, course)
         if move.block.kind is MoveKind.PTP:
             self._add_joint_rates(rows, stretch, move)
         elif course.way is not None:
@@ -96,14 +105,19 @@ class ToolMoveChecks:
         self._path[1].add(stretch.rows, found.orientation, PATH_ORIENTATION)
         along = np.concatenate([self._along, found.along])
         unit = "rad" if found.by_angle else "m"
-        back = along[1:-1] - along[2:]
+        # Against the furthest row so far: small steps back must not add up.
+        furthest = np.maximum.accumulate(np.concatenate([[self._furthest], found.along]))
+        back = furthest[:-1] - found.along
+        self._furthest = float(furthest[-1])
         self._progress.add(stretch.rows, back, PATH_STEP, rank=back / PATH_STEP, unit=unit)
         if stretch.ends and course.move.finished:
             # A full circle ends where it began: its goal does not tell whether it was run.
             missing = np.array([found.length - found.along[-1]])
             share = missing / PATH_POSITION
             self._progress.add(stretch.rows[-1:], missing, PATH_POSITION, rank=share, unit=unit)
-        bound = course.acceleration(found.length, found.by_angle)
+        # An arc too short to be one goes by its chord, perhaps by the angle.
+        short_arc = found.by_angle and not isinstance(course.way, LineWay)
+        bound = course.move.block.law.acc_ori if short_arc else course.bounds[1]
         self._add_acceleration(stretch, along, bound, "rad/s2" if found.by_angle else "m/s2")
         self._along = along[-2:]
 
@@ -124,16 +138,14 @@ class ToolMoveChecks:
             high = bound * (1.0 + PROGRAM_EXCESS) + 2.0 * PATH_STEP / self._dt
             self._speed.add(stretch.rows, rates, bound, ~(rates <= high), rates / high, unit)
 
-    def _add_time(self, rows: Rows, stretch: Stretch, move: MoveRows) -> None:
-        """A move with TIME takes at least that, from where it starts to the last row that moves."""
-        due = move.block.law.duration
-        moving = (rows.postures[stretch.after] != rows.postures[stretch.before]).any(axis=1)
-        if moving.any():
-            self._last_moving = int(stretch.rows[np.flatnonzero(moving)[-1]])
-        if due is not None and stretch.ends and move.finished:
-            short = np.array([due - (self._last_moving - move.start) * self._dt])
-            allowed = TICK_SHARE * self._dt
-            self._time.add(stretch.rows[-1:], short, allowed)
+    def _add_time(self, rows: Rows, stretch: Stretch, course: Course) -> None:
+        """From its start to its hold tick a move takes at least what TIME, or SPEED and ACC, ask for."""
+        move, due = course.move, course.shortest
+        last = stretch.part.stop
+        held = np.array_equal(rows.postures[last], rows.postures[last - 1])
+        short = np.array([due - (move.last - move.start - held) * self._dt])
+        allowed = TICK_SHARE * self._dt + PROGRAM_EXCESS * due
+        self._time.add(stretch.rows[-1:], short, allowed, rank=short / allowed)
 
     def _add_joint_rates(self, rows: Rows, stretch: Stretch, move: MoveRows) -> None:
         """A PTP uses at most its share of every joint's limits, where these are finite."""

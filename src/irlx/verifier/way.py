@@ -32,14 +32,30 @@ class Course:
         law = self.move.block.law
         return min(law.speed, float(np.sqrt(law.acc / self.flatness))) if self.flatness > 0.0 else law.speed
 
-    def acceleration(self, length: float, by_angle: bool) -> float:
-        """Largest programmed acceleration along a way of this length: m/s2; rad/s2 where the angle leads."""
-        law = self.move.block.law
-        if by_angle:
-            return law.acc_ori
-        if isinstance(self.way, LineWay) and self.way.angle > 0.0:
-            return min(law.acc, law.acc_ori * length / self.way.angle)
-        return law.acc
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Largest speed and acceleration along the way, by s and s2: in m, or rad where the angle leads."""
+        law, way = self.move.block.law, self.way
+        if not isinstance(way, LineWay) or way.angle == 0.0:
+            return self.speed, law.acc
+        if way.by_angle:
+            share = way.angle / way.distance if way.distance > 0.0 else np.inf
+            return min(law.speed_ori, law.speed * share), min(law.acc_ori, law.acc * share)
+        share = way.distance / way.angle
+        return min(law.speed, law.speed_ori * share), min(law.acc, law.acc_ori * share)
+
+    @property
+    def shortest(self) -> float:
+        """Shortest time from rest to rest that SPEED and ACC, or TIME, allow, s."""
+        least = self.move.block.law.duration or 0.0
+        if self.way is None:
+            return least
+        # As numpy's numbers, which divide by zero.
+        speed, acc, length = (np.float64(value) for value in (*self.bounds, self.way.length))
+        if length == 0.0:
+            return least
+        short = speed * speed >= length * acc
+        return max(least, float(2.0 * np.sqrt(length / acc) if short else length / speed + speed / acc))
 
 
 def course_of(evidence: Evidence, move: MoveRows, start: Pose) -> Course:

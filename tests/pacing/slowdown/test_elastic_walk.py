@@ -141,7 +141,7 @@ def test_a_way_out_of_reach_is_stopped_at_the_first_interval_without_a_step() ->
     grid = path_grid(path, Trapezoid.fastest(path.length, 0.5, 2.0))
     least, limits = LeastMotion(robot.weights), robot.unlimited()
     bounds = reserved(limits, grid.intervals + 1, RESERVE)
-    passage = elastic_walk(robot.model(limits), grid, robot.start, lambda s: least, bounds, RESERVE)
+    passage = elastic_walk(robot.model(limits), grid, robot.start, lambda s, _: least, bounds, RESERVE)
     assert passage.stopped is not None
     interval, solution = passage.stopped
     assert len(passage.q) == interval + 1
@@ -160,5 +160,5 @@ def test_frozen_joints_keep_their_bits(name: str) -> None:
     robot, grid = machine(name), grid_of(name)
     least, limits = LeastMotion(robot.weights), slow_limits(name, 0.8)
     bounds = reserved(limits, grid.intervals + 1, RESERVE)
-    passage = elastic_walk(robot.model(limits, (2,)), grid, robot.start, lambda s: least, bounds, RESERVE)
+    passage = elastic_walk(robot.model(limits, (2,)), grid, robot.start, lambda s, _: least, bounds, RESERVE)
     assert np.all(passage.q[:, 2] == robot.start[2])

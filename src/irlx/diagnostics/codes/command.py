@@ -12,6 +12,11 @@ COMMAND = (
     error("IRL007", "{path} is a folder, not a file"),
     error("IRL008", "{name} is a MODULE, which does not run by itself", "run a PROGRAM that imports from it"),
     error(
+        "IRL009",
+        "the plugin {name} cannot be imported: {cause}",
+        "name a module that Python finds, or a file that ends with .py",
+    ),
+    error(
         "IRL090",
         "internal error: {cause}",
         "this is a fault of irlx, not of your program; please report it with the program and the cell",

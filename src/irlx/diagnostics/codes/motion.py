@@ -1,6 +1,6 @@
 """IRL4xx: motion, as far as the text tells."""
 
-from irlx.diagnostics.codes.code import Code, error
+from irlx.diagnostics.codes.code import Code, error, warning
 
 MOTION: tuple[Code, ...] = (
     error("IRL401", "PATH does not go with {kind}", "write MOVE LIN PATH or MOVE SPLINE PATH"),
@@ -13,4 +13,9 @@ MOTION: tuple[Code, ...] = (
         "give one posture for each target",
     ),
     error("IRL406", "WITH {clause} is given twice"),
+    warning(
+        "IRL407",
+        "WITH {clause} does nothing on a PTP, which goes straight in joint space",
+        "remove it, or use MOVE LIN or MOVE CIRCLE",
+    ),
 )

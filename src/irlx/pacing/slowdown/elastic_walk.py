@@ -57,14 +57,14 @@ def elastic_walk(
     model: Model,
     grid: PathGrid,
     start: Array,
-    criterion_of: Callable[[float], Criterion],
+    criterion_of: Callable[[float, float], Criterion],
     bounds: tuple[Array, Array],
     reserve: float,
 ) -> Passage:
     """Walk from posture `start` (n,) along the knots of a grid.
 
-    `criterion_of` gives the criterion for a path parameter, `bounds` the lower and upper positions
-    (N + 1, n) of the knots; a joint outside them comes back by `reserve` / 12 an interval.
+    `criterion_of` gives the criterion for a path parameter and the way to it, `bounds` the lower and upper
+    positions (N + 1, n) of the knots; a joint outside them comes back by `reserve` / 12 an interval.
     """
     solver = TickSolver(model.kinematics, ProxQpSolver())
     targets = model.targets(grid.poses)
@@ -74,7 +74,7 @@ def elastic_walk(
     for i in range(grid.intervals):
         target = targets[i + 1]
         room = _Room.at(model, q[i], (bounds[0][i + 1], bounds[1][i + 1]), reserve, float(grid.times[i]))
-        criterion = criterion_of(float(grid.s[i + 1]))
+        criterion = criterion_of(float(grid.s[i + 1]), float(grid.s[i + 1] - grid.s[i])).begun(q[i])
         easy = solver.solve(TickProblem(target, q[i], room.none(), criterion, model.free), thorough=False)
         if easy.solved and room.holds(easy.q - q[i]):
             q[i + 1] = rounded_inside(easy.q, model.limits)

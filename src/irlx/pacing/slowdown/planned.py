@@ -93,7 +93,7 @@ class MotionTask:
     law: Trapezoid
     acc: float
     start: Array
-    criterion_of: Callable[[float], Criterion]
+    criterion_of: Callable[[float, float], Criterion]
     ticking: Ticking
     draws: bool = False
 
@@ -145,7 +145,7 @@ def _with_reserve(
         return Refusal(float(grid.s[interval + 1]), solution=solution)
     q = passage.q
     if task.draws:
-        q = with_drawn_end(model, grid, q, bounds, task.criterion_of(float(grid.s[-1])))
+        q = with_drawn_end(model, grid, q, bounds, task.criterion_of(float(grid.s[-1]), 0.0))
     curves = timed_curves(model, grid, q, bounds, task.acc)
     if not curves:
         return _outside(model, grid, q)

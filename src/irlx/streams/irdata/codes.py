@@ -19,6 +19,7 @@ BLOCK_CODES = {
     "LimitSwitchBlock": 410,
     "FreezeBlock": 420,
     "CyclicBlock": 430,
+    "CriterionBlock": 440,
 }
 """Code of each kind of function block; signals and waits will take 5xx."""
 

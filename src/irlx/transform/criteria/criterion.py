@@ -7,6 +7,8 @@ from abc import ABC, abstractmethod
 import numpy as np
 from numpy.typing import NDArray
 
+from irlx.transform.metric import solved
+
 Array = NDArray[np.float64]
 
 
@@ -14,10 +16,15 @@ class Criterion(ABC):
     """A function phi of the whole step of a tick that the inverse transform makes small.
 
     `step` (n,) is the step since the start of the tick, `q` (n,) the posture at that start. The
-    Hessian is diagonal and does not depend on the step; it must be positive.
+    Hessian does not depend on the step and must be positive; a diagonal one is given as such, (n,), another
+    one whole, (n, n).
     """
 
     name: str
+
+    def begun(self, q: Array) -> Criterion:
+        """The criterion of a tick that begins at posture q (n,): what depends on that is computed once."""
+        return self
 
     @abstractmethod
     def value(self, q: Array, step: Array) -> float:
@@ -29,12 +36,13 @@ class Criterion(ABC):
 
     @abstractmethod
     def hessian(self) -> Array:
-        """Diagonal of the second derivative of phi by the step, shape (n,)."""
+        """Second derivative of phi by the step: its diagonal (n,), or all of it (n, n)."""
 
     def pull(self, q: Array, step: Array) -> Array:
         """Way from a step to the one that makes phi smallest where no path is asked for: -H^-1 g, (n,)."""
-        return -self.gradient(q, step) / self.hessian()
+        return -solved(self.hessian(), self.gradient(q, step))
 
     def inverse_hessian(self) -> Array:
-        """Diagonal of H^-1, shape (n,)."""
-        return 1.0 / self.hessian()
+        """H^-1, as a diagonal (n,) or whole (n, n)."""
+        hessian = self.hessian()
+        return 1.0 / hessian if hessian.ndim == 1 else np.asarray(np.linalg.inv(hessian))

@@ -1,0 +1,21 @@
+"""The tool Jacobian in rows of one unit."""
+
+from __future__ import annotations
+
+import pinocchio as pin
+
+from irlx.robot.kinematics import Kinematics
+from irlx.transform.measures.measure import Array
+
+_ANYWHERE = pin.SE3.Identity()
+
+
+def scaled_jacobian(kinematics: Kinematics, q: Array) -> Array:
+    """Tool Jacobian in the tool frame at q, shape (6, n), its position rows divided by the robot's reach.
+
+    This is the Jacobian of the robot measured in lengths of its reach, so `jacobian_derivative` of it is its
+    derivative. Its singular values are the same in every frame with its origin in the tool point.
+    """
+    jacobian: Array = kinematics.difference(q, _ANYWHERE)[1]
+    jacobian[:3] /= kinematics.description.reach
+    return jacobian

@@ -1,0 +1,86 @@
+"""programs/koch/experiments.py: the facts of every experiment, and what it says without matplotlib."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import irlx
+
+KOCH = Path(__file__).parents[2] / "programs" / "koch"
+SOURCE = Path(irlx.__file__).parents[1]
+
+
+@pytest.fixture
+def command(tmp_path):
+    """Runs experiments.py with arguments in a folder of its own, as where matplotlib is not installed."""
+    hidden = tmp_path / "hidden"
+    hidden.mkdir()
+    message = "No module named 'matplotlib'"
+    text = f'raise ModuleNotFoundError("{message}", name="matplotlib")\n'
+    (hidden / "matplotlib.py").write_text(text, encoding="utf-8")
+
+    def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+        path = os.pathsep.join([str(hidden), str(SOURCE)])
+        environment = {**os.environ, "PYTHONPATH": path, "PYTHONIOENCODING": "utf-8"}
+        return subprocess.run(
+            [sys.executable, str(KOCH / "experiments.py"), *arguments],
+            capture_output=True,
+            text=True,
+            encoding="utf-8",
+            cwd=tmp_path,
+            env=environment,
+            check=False,
+        )
+
+    return run
+
+
+def test_facts_of_all_experiments(command) -> None:
+    done = command("all", "--facts")
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
+    lines = done.stdout.splitlines()
+    assert [line[:3] for line in lines if line and not line.startswith(" ")] == [
+        "6.1",
+        "6.2",
+        "6.3",
+        "6.4",
+        "6.5",
+    ]
+    told = {" ".join(line.split()) for line in lines}
+    assert "limits met (ticks), basic 11+ 42" in told
+    assert "joint 7, free -412.8" in told
+    assert "limits met (ticks), cyclic 10- 68, 11+ 139" in told
+    assert "different values of joints 2, 3 1, 1" in told
+
+
+def test_without_matplotlib_one_line_and_the_facts(command, tmp_path) -> None:
+    done = command("6.1", "--tick", "50", "100")
+    assert done.returncode == 1
+    assert done.stderr == "no pictures: matplotlib is missing; pip install matplotlib\n"
+    told = {" ".join(line.split()) for line in done.stdout.splitlines()}
+    assert "limits met (ticks), basic 11+ 42 11+ 21" in told
+    assert [path.name for path in tmp_path.iterdir()] == ["hidden"]
+
+
+def test_weight_and_limit_can_be_others(command) -> None:
+    """Ten times the weight: joint 10 moves less; 200 deg/s2 holds where 350 would have been used."""
+    done = command("6.3", "--weight", "50", "--acceleration", "200", "--facts")
+    assert done.returncode == 0, done.stderr
+    facts = {line[2:46].strip(): line[46:].strip() for line in done.stdout.splitlines()}
+    assert float(facts["largest of all joints but 10, both limited"]) <= 200.0
+    free, *_ = facts["joint 10: free, limited, weight x 4, mm/s²"].split(",")
+    assert float(free) < 50.0
+
+
+def test_drawn_where_matplotlib_is(tmp_path) -> None:
+    pytest.importorskip("matplotlib")
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(SOURCE), *sys.path])}
+    arguments = ["6.3", "--joints", "7", "11", "--window", "5", "6.2", "--out", str(tmp_path / "new")]
+    subprocess.run([sys.executable, str(KOCH / "experiments.py"), *arguments], env=environment, check=True)
+    assert (tmp_path / "new" / "experiment_6_3.png").read_bytes().startswith(b"\x89PNG")
