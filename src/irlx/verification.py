@@ -23,10 +23,11 @@ from irlx.robot.description import RobotDescription
 from irlx.streams.error import StreamError
 from irlx.streams.formats import format_of, scan_stream
 from irlx.streams.joint_stream import StreamHeader
+from irlx.streams.scan import scan_of
 from irlx.verifier import Reference, Report, verify_scans
+from irlx.verifier.findings import FAILED, OK, Check
 from irlx.verifier.outline import Outline, Scans
 from irlx.verifier.program_blocks import Unanswerable, blocks_differ
-from irlx.verifier.report import FAILED, OK, Check
 
 if TYPE_CHECKING:
     # Not imported: a run brings along all that made it, of which nothing is wanted here.
@@ -54,7 +55,8 @@ def verify(
         may_lack_blocks = not format_of(run_or_file).carries_blocks
     else:
         stream = run_or_file.stream
-        scans, name, beside, from_file = stream.scan, stream.header.program_name, Path.cwd(), False
+        scans, name = partial(scan_of, stream), stream.header.program_name
+        beside, from_file = Path.cwd(), False
         may_lack_blocks = False
     header = _header(scans)
     of_program = None if text is None else given_cell or _cell_of(text)

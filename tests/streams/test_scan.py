@@ -18,6 +18,7 @@ from irlx.streams import (
     StreamHeader,
     collect,
     read_stream,
+    scan_of,
     scan_stream,
     write_stream,
 )
@@ -123,18 +124,18 @@ def test_few_rows(ending: str, rows: int, good: JointStream, tmp_path: Path) -> 
 
 
 def test_a_stream_in_memory_is_scanned_like_a_file(long) -> None:
-    items = list(long.scan())
+    items = list(scan_of(long))
     assert items[0] is long.header
     assert items[-1] == StreamEnd(True)
     assert [len(batch.ticks) for batch in batches_of(items)] == [4096, 4096, ROWS - 8192]
     assert_rows(items, long, ROWS)
-    again = collect(long.scan())
+    again = collect(scan_of(long))
     assert again.records == long.records
-    assert_rows(list(again.scan()), long, ROWS)
+    assert_rows(list(scan_of(again)), long, ROWS)
 
 
 def test_collect_refuses_what_is_no_scan(good: JointStream) -> None:
-    items = list(good.scan())
+    items = list(scan_of(good))
     for wrong in ([], items[1:], items[:-1]):
         with pytest.raises(ValueError, match=r"a scan (begins|ends) with"):
             collect(iter(wrong))

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from irlx.streams import write_stream
+from irlx.streams import scan_of, write_stream
 from irlx.streams.formats import scan_stream
 from irlx.verifier import Reference, rows, verify_scans, verify_stream
 from irlx.verifier.outline import outline_of
@@ -108,7 +108,7 @@ def test_memory_does_not_grow_with_the_stream(ending, kit, tmp_path):
 
 def test_an_outline_has_what_the_stream_has(kit):
     stream = busy(kit)
-    outline = outline_of(stream.scan)
+    outline = outline_of(partial(scan_of, stream))
     assert outline.rows == len(stream.ticks)
     assert outline.largest == float(np.abs(stream.q).max())
     for number, (identity, first, last) in enumerate(outline.segments()):

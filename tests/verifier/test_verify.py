@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from irlx.streams import JointStream, read_stream, write_stream
-from irlx.verifier import CHECKS, Report, render_table, to_plain, verify_stream
+from irlx.verifier import CHECKS, Report, verify_stream
 
 Change = Callable[[JointStream], JointStream]
 
@@ -35,7 +35,7 @@ def take(stream: JointStream, rows: np.ndarray, ticks: np.ndarray | None = None)
 
 def test_good_stream_passes(good: JointStream, robot) -> None:
     report = verify_stream(good, robot)
-    assert report.passed, render_table(report)
+    assert report.passed, str(report)
     assert {check.name for check in report.unchecked} == UNASKED
     absent = {"file", "written rates"} | {name for name in CHECKS if name.startswith("reconfiguration")}
     assert {check.name for check in report.without_case} == absent
@@ -139,7 +139,7 @@ SABOTAGE: list[tuple[str, Change, str, dict[str, object]]] = [
 def assert_caught(report: Report, name: str, place: dict[str, object]) -> None:
     assert not report.passed
     check = report[name]
-    assert check.status == "failed", render_table(report)
+    assert check.status == "failed", str(report)
     for key, value in place.items():
         assert check.first is not None
         assert getattr(check.first, key) == value, check
@@ -152,9 +152,9 @@ def assert_caught(report: Report, name: str, place: dict[str, object]) -> None:
 def test_sabotage(change: Change, name: str, place: dict[str, object], good: JointStream, robot) -> None:
     report = verify_stream(change(good), robot)
     assert_caught(report, name, place)
-    assert name in render_table(report)
+    assert name in str(report)
     assert report.diagnostics("a.irdata")[0].code == "IRL709"
-    json.dumps(to_plain(report), allow_nan=False)
+    json.dumps(report.to_plain(), allow_nan=False)
 
 
 @pytest.mark.req("STR-06")
@@ -189,7 +189,7 @@ def test_hold_row_removed(good: JointStream, robot) -> None:
 def test_not_a_number(good: JointStream, robot) -> None:
     report = verify_stream(with_q(good, 30, 2, lambda _: float("nan")), robot)
     assert_caught(report, "finite values", {"tick": 30, "joint": "y"})
-    json.dumps(to_plain(report), allow_nan=False)
+    json.dumps(report.to_plain(), allow_nan=False)
 
 
 @pytest.mark.req("STR-06")

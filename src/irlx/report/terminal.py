@@ -7,7 +7,7 @@ from math import degrees
 
 from irlx.report.events import LimitActive, Slowed
 from irlx.report.summary import LimitUse, Summary
-from irlx.verifier import Report, verdict
+from irlx.verifier import Report
 from irlx.verifier.table import printable
 
 _LABEL = 12
@@ -48,7 +48,7 @@ def verification_line(name: str, report: Report) -> str:
     """One line on a verified file."""
     if not report.passed:
         first = report.failed[0]
-        return _line("VERIFY", printable(f"{name}: {verdict(report)}; {first.name}: {first.text}"))
+        return _line("VERIFY", printable(f"{name}: {report.verdict}; {first.name}: {first.text}"))
     unmade = f", {len(report.unchecked)} not made" if report.unchecked else ""
     return _line("verified", f"{name}: {len(report.made)} checks passed{unmade}")
 

@@ -1,10 +1,10 @@
-"""Joint streams: the samples and blocks of a run, their file formats, and the independent verifier."""
+"""Joint streams: the samples and blocks of a run, and their file formats."""
 
 from irlx.streams.error import StreamError
 from irlx.streams.formats import KNOWN_ENDINGS, read_stream, scan_stream, write_stream
 from irlx.streams.irdata import IrdataWriter, read_irdata, scan_irdata
 from irlx.streams.joint_stream import FORMAT_VERSION, BlockRecord, JointStream, StreamHeader
-from irlx.streams.scan import RowBatch, ScanItem, StatedRates, StreamEnd, collect
+from irlx.streams.scan import RowBatch, ScanItem, StatedRates, StreamEnd, collect, scan_of
 
 __all__ = [
     "FORMAT_VERSION",
@@ -22,6 +22,7 @@ __all__ = [
     "read_irdata",
     "read_stream",
     "scan_irdata",
+    "scan_of",
     "scan_stream",
     "write_stream",
 ]

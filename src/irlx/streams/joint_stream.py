@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from irlx.blocks import Block
 from irlx.robot.limits import JointLimits
-
-if TYPE_CHECKING:
-    from irlx.streams.scan import ScanItem
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -23,8 +18,6 @@ FORMAT_VERSION = 1
 """Version of the stream's content that this irlx writes; readers refuse others."""
 
 JOINT_UNITS = ("rad", "m")
-
-_PORTION = 4096
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,18 +131,6 @@ class JointStream:
     def qdd(self) -> Floats:
         """Backward differences of `qd` per s, shape (N, n); row 0 is 0."""
         return _backward_difference(self.qd, self.dt)
-
-    def scan(self) -> Iterator[ScanItem]:
-        """The stream as a scan, like that of a file: the header, all records, rows in portions, the end."""
-        # The items of a scan are made of headers and records and thus imported only here.
-        from irlx.streams.scan import RowBatch, StreamEnd
-
-        yield self.header
-        yield from self.records
-        for start in range(0, len(self.ticks), _PORTION):
-            part = slice(start, start + _PORTION)
-            yield RowBatch(self.ticks[part], self.q[part], self.block[part], self.tool[part])
-        yield StreamEnd(self.complete)
 
 
 def _backward_difference(values: Floats, dt: float) -> Floats:

@@ -51,6 +51,19 @@ ScanItem = StreamHeader | BlockRecord | RowBatch | StreamEnd
 """A scan is an iterator of these: one header first, one end last, records and rows between them."""
 
 
+_PORTION = 4096
+
+
+def scan_of(stream: JointStream) -> Iterator[ScanItem]:
+    """A stream in memory as a scan, like that of a file: header, all records, rows in portions, the end."""
+    yield stream.header
+    yield from stream.records
+    for start in range(0, len(stream.ticks), _PORTION):
+        part = slice(start, start + _PORTION)
+        yield RowBatch(stream.ticks[part], stream.q[part], stream.block[part], stream.tool[part])
+    yield StreamEnd(stream.complete)
+
+
 def collect(scan: Iterator[ScanItem]) -> JointStream:
     """Stream of everything that a scan gives; raises what the scan raises.
 

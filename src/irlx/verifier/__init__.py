@@ -5,9 +5,9 @@ and no code with what makes streams: forward kinematics, differences and geometr
 """
 
 from irlx.verifier.checks import CHECKS, verify_scans, verify_stream
+from irlx.verifier.findings import Check, Finding
 from irlx.verifier.provenance import Reference
-from irlx.verifier.report import Check, Finding, Report
-from irlx.verifier.table import render_table, to_plain, verdict
+from irlx.verifier.report import Report
 
 __all__ = [
     "CHECKS",
@@ -15,9 +15,6 @@ __all__ = [
     "Finding",
     "Reference",
     "Report",
-    "render_table",
-    "to_plain",
-    "verdict",
     "verify_scans",
     "verify_stream",
 ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Protocol
 
 import numpy as np
@@ -12,15 +13,17 @@ from irlx.robot.description import RobotDescription
 from irlx.robot.limits import JointLimits
 from irlx.streams.error import StreamError
 from irlx.streams.joint_stream import JointStream
+from irlx.streams.scan import scan_of
 from irlx.verifier.closure import ClosureChecks
 from irlx.verifier.evidence import Evidence
+from irlx.verifier.findings import FAILED, NO_CASE, NOT_CHECKED, OK, Check, Subject
 from irlx.verifier.joint_moves import JointMoveChecks
 from irlx.verifier.limit_checks import LimitChecks, StartCheck
 from irlx.verifier.moves import check_blocks
 from irlx.verifier.outline import Outline, Scans, check_complete, check_finite, check_ticks, outline_of
 from irlx.verifier.provenance import RateChecks, Reference, ToolChecks, check_robot, check_robot_limits
 from irlx.verifier.reconfigurations import ReconfigurationChecks
-from irlx.verifier.report import FAILED, NO_CASE, NOT_CHECKED, OK, Check, Report, Subject
+from irlx.verifier.report import Report
 from irlx.verifier.rows import Rows, rows_of
 from irlx.verifier.stillness import FrozenChecks, StopChecks
 from irlx.verifier.tool_moves import ToolMoveChecks
@@ -97,7 +100,7 @@ def verify_stream(
     """
     reference = None if robot is None else Reference(robot, limits)
     name = stream.header.program_name
-    return verify_scans(stream.scan, reference, name, may_lack_blocks=may_lack_blocks)
+    return verify_scans(partial(scan_of, stream), reference, name, may_lack_blocks=may_lack_blocks)
 
 
 def verify_scans(

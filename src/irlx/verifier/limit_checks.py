@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from irlx.promises import LIMIT_EXCESS, SAME_NUMBER, rounding_allowance
 from irlx.streams.joint_stream import Floats, Integers
 from irlx.verifier.evidence import Evidence
-from irlx.verifier.report import Check
+from irlx.verifier.findings import Check
 from irlx.verifier.rows import Rows
 from irlx.verifier.tally import Tally
 

@@ -19,8 +19,8 @@ from irlx.blocks import (
 )
 from irlx.promises import UNIT_LENGTH
 from irlx.streams.joint_stream import Integers
+from irlx.verifier.findings import FAILED, NOT_CHECKED, OK, Check
 from irlx.verifier.outline import Outline
-from irlx.verifier.report import FAILED, NOT_CHECKED, OK, Check
 
 
 @dataclass(frozen=True)

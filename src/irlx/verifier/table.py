@@ -5,24 +5,22 @@ from __future__ import annotations
 from math import isfinite
 from typing import Any
 
-from irlx.verifier.report import FAILED, OK, Check, Finding, Report
+from irlx.verifier.findings import FAILED, NO_CASE, NOT_CHECKED, OK, Check, Finding, Subject
 
+_STATUSES = (OK, FAILED, NOT_CHECKED, NO_CASE)
 _COLUMNS = ("check", "status", "worst", "allowed", "where")
 
 
-def render_table(report: Report) -> str:
+def text_table(subject: Subject, checks: tuple[Check, ...]) -> str:
     """Table of all checks, one line each with the worst value and its place, then the findings in words."""
-    rows = [_COLUMNS, *(_row(check) for check in report.checks)]
+    rows = [_COLUMNS, *(_row(check) for check in checks)]
     widths = [max(len(row[column]) for row in rows) for column in range(len(_COLUMNS))]
     lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) for row in rows]
     lines.insert(1, "  ".join("-" * width for width in widths))
-    notes = [f"{check.name}: {check.text}" for check in report.failed]
-    notes += [
-        f"{check.name}: {check.detail}" for check in report.checks if check.detail and check.status == OK
-    ]
-    return "\n".join(
-        line.rstrip() for line in [_title(report), *lines, "", *notes, *_unmade(report), verdict(report)]
-    )
+    notes = [f"{check.name}: {check.text}" for check in checks if check.status == FAILED]
+    notes += [f"{check.name}: {check.detail}" for check in checks if check.detail and check.status == OK]
+    text = [_title(subject), *lines, "", *notes, *_unmade(checks), verdict_of(checks)]
+    return "\n".join(printable(line).rstrip() for line in text)
 
 
 def printable(text: str) -> str:
@@ -30,22 +28,19 @@ def printable(text: str) -> str:
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
-def verdict(report: Report) -> str:
+def verdict_of(checks: tuple[Check, ...]) -> str:
     """One line: how many checks passed, failed, could not be made, and had no case."""
-    parts = []
-    if report.failed:
-        parts.append(f"FAILED: {len(report.failed)} of {len(report.made)} checks")
-    else:
-        parts.append(f"{len(report.made)} checks passed")
-    if report.unchecked:
-        parts.append(f"{len(report.unchecked)} not made")
-    if report.without_case:
-        parts.append(f"{len(report.without_case)} without a case")
+    count = {status: sum(check.status == status for check in checks) for status in _STATUSES}
+    made = count[OK] + count[FAILED]
+    parts = [f"FAILED: {count[FAILED]} of {made} checks" if count[FAILED] else f"{made} checks passed"]
+    if count[NOT_CHECKED]:
+        parts.append(f"{count[NOT_CHECKED]} not made")
+    if count[NO_CASE]:
+        parts.append(f"{count[NO_CASE]} without a case")
     return ", ".join(parts)
 
 
-def _title(report: Report) -> str:
-    subject = report.subject
+def _title(subject: Subject) -> str:
     words = [subject.name or "stream"]
     if subject.tick_ns:
         words.append(
@@ -55,10 +50,12 @@ def _title(report: Report) -> str:
     return ": ".join([words[0], "; ".join(words[1:])]) if len(words) > 1 else words[0]
 
 
-def _unmade(report: Report) -> list[str]:
+def _unmade(checks: tuple[Check, ...]) -> list[str]:
     """Why checks were not made, each reason once with the names it holds for."""
     reasons: dict[str, list[str]] = {}
-    for check in report.unchecked:
+    for check in checks:
+        if check.status != NOT_CHECKED:
+            continue
         reasons.setdefault(check.detail, []).append(check.name)
     return [f"not checked, since {why}: {', '.join(names)}" for why, names in reasons.items()]
 
@@ -77,12 +74,9 @@ def _row(check: Check) -> tuple[str, ...]:
     return check.name, status, f"{worst.value:.6g}{unit}", f"{worst.allowed:.6g}", ", ".join(place)
 
 
-def to_plain(report: Report) -> dict[str, Any]:
-    """Dictionary of a report that JSON can hold; numbers that are not finite become strings."""
-    subject = report.subject
+def plain_checks(subject: Subject, checks: tuple[Check, ...]) -> dict[str, Any]:
+    """Stream and checks of a report as plain data."""
     return {
-        "passed": report.passed,
-        "verdict": verdict(report),
         "stream": {
             "name": subject.name,
             "program": subject.program,
@@ -90,7 +84,7 @@ def to_plain(report: Report) -> dict[str, Any]:
             "samples": subject.samples,
             "duration": subject.duration,
         },
-        "checks": [_check_to_plain(check) for check in report.checks],
+        "checks": [_check_to_plain(check) for check in checks],
     }
 
 

@@ -17,9 +17,9 @@ from irlx.promises import (
 )
 from irlx.streams.joint_stream import Floats
 from irlx.verifier.evidence import Evidence, Pose
+from irlx.verifier.findings import Check
 from irlx.verifier.moves import MoveRows
 from irlx.verifier.paths import LineWay
-from irlx.verifier.report import Check
 from irlx.verifier.rotations import angle_between
 from irlx.verifier.rows import Rows, Stretch
 from irlx.verifier.way import Course, course_of
