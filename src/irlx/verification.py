@@ -68,7 +68,7 @@ def verify(
         reference = Reference(strict.robot, strict.limits, strict.start)
     elif header is not None:
         reference = _looked_up(header, beside, of_program)
-    compare = None if text is None else partial(_program_check, text, of_program)
+    compare = None if text is None else partial(_program_check, text, of_program, may_lack_blocks)
     return verify_scans(scans, reference, name, compare, from_file, may_lack_blocks)
 
 
@@ -127,13 +127,13 @@ def _same_limits(header: StreamHeader, cell: Cell) -> bool:
     return all((a == b).all() for own, other in pairs for a, b in zip(own, other, strict=True))
 
 
-def _program_check(program: Program, cell: Cell | None, outline: Outline) -> Check:
+def _program_check(program: Program, cell: Cell | None, may_lack_blocks: bool, outline: Outline) -> Check:
     """The stream comes from this very text, and its blocks are those that the text gives in this cell."""
     header = outline.header
     findings, unsaid = [], ""
     if program.sha256 != header.program_sha256:
         findings.append(f"the stream was made from {header.program_name} with another text")
-    if not outline.records and outline.ids.any():
+    if may_lack_blocks and not outline.records:
         unsaid = "its text only: the stream carries no blocks"
     elif cell is None:
         unsaid = "its text only: no cell to run it in is found"
