@@ -30,18 +30,19 @@ _PEAK_BEND = 10.0 / 3.0**0.5
 def way_to_best(model: Model, q: Array, goal: Array, qp: QpSolver) -> Array:
     """Step (n,) from posture q (n,) to the one nearest to `goal` (n,) with its tool pose, linearised.
 
-    Minimises 1/2 (q + d - goal)' W (q + d - goal) over J d = 0. Joints on a position limit do not
-    go beyond it, frozen ones stay. Zero where the posture is the best one already, and where it is singular.
+    Minimises 1/2 (q + d - goal)' W (q + d - goal) over J d = 0. Joints on a position limit do not go beyond
+    it; those that are frozen, or that a limit lets not move, stay. Zero where the posture is the best one
+    already, and where it is singular.
     """
-    kinematics, limits = model.kinematics, model.limits
+    kinematics, limits, free = model.kinematics, model.limits, model.movable
     _, jacobian = kinematics.difference(q, kinematics.target(*kinematics.tool_pose(q)))
     problem = StepProblem(
-        jacobian[:, model.free],
+        jacobian[:, free],
         np.zeros(6),
-        (model.weights * (q - goal))[model.free],
-        model.weights[model.free],
-        np.where(q - limits.position_lower <= _ON_LIMIT, 0.0, -np.inf)[model.free],
-        np.where(limits.position_upper - q <= _ON_LIMIT, 0.0, np.inf)[model.free],
+        (model.weights * (q - goal))[free],
+        model.weights[free],
+        np.where(q - limits.position_lower <= _ON_LIMIT, 0.0, -np.inf)[free],
+        np.where(limits.position_upper - q <= _ON_LIMIT, 0.0, np.inf)[free],
     )
     way = np.zeros(q.size)
     try:
@@ -50,7 +51,7 @@ def way_to_best(model: Model, q: Array, goal: Array, qp: QpSolver) -> Array:
     except np.linalg.LinAlgError:
         return way
     if step is not None:
-        way[model.free] = step.d
+        way[free] = step.d
     return way
 
 

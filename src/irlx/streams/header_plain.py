@@ -149,9 +149,12 @@ def _bounds(values: object, where: str) -> Floats:
 def _bound(value: object, where: str) -> float:
     if isinstance(value, str) and value in {"inf", "-inf"}:
         return float(value)
-    if isinstance(value, bool) or not isinstance(value, int | float) or isnan(value):
+    if isinstance(value, bool) or not isinstance(value, int | float):
         raise PlainFormError(f"{where}: needs numbers, found {value!r}")
     try:
-        return float(value)
+        number = float(value)
     except OverflowError:
         raise PlainFormError(f"{where}: a number is too large") from None
+    if isnan(number):
+        raise PlainFormError(f"{where}: needs numbers, found {value!r}")
+    return number

@@ -61,8 +61,11 @@ def free_step(problem: StepProblem) -> Array:
     Raises numpy.linalg.LinAlgError where J has lost its rank.
     """
     scaled = rows_over(problem.jacobian, problem.hessian)
-    k = solve_gram(scaled @ problem.jacobian.T, problem.twist + scaled @ problem.gradient)
-    return np.asarray(scaled.T @ k - solved(problem.hessian, problem.gradient))
+    gram = scaled @ problem.jacobian.T
+    k = solve_gram(gram, problem.twist + scaled @ problem.gradient)
+    d = scaled.T @ k - solved(problem.hessian, problem.gradient)
+    # The Gram matrix squares the condition of J; correcting what is left of the pose takes one half back.
+    return np.asarray(d + scaled.T @ solve_gram(gram, problem.twist - problem.jacobian @ d))
 
 
 def path_step(problem: StepProblem) -> Array:

@@ -34,6 +34,15 @@ class Model:
         """Joints more than the pose needs: dimension r of the null space."""
         return int(np.count_nonzero(self.free)) - 6
 
+    @property
+    def movable(self) -> NDArray[np.bool_]:
+        """Free joints (n,) that no limit holds in place: who may not speed up or not slow down cannot go."""
+        limits = self.limits
+        held = (limits.speed_lower == 0.0) & (limits.speed_upper == 0.0)
+        held |= (limits.acceleration_lower == 0.0) | (limits.acceleration_upper == 0.0)
+        held |= limits.position_lower == limits.position_upper
+        return np.asarray(self.free & ~held)
+
     def targets(self, poses: Poses) -> list[pin.SE3]:
         """Poses as the kinematics keeps them; made once for all uses of a grid."""
         target = self.kinematics.target

@@ -103,7 +103,7 @@ def plan_motion(model: Model, task: MotionTask) -> PlannedMotion | Refusal:
 
     See docs/reference/pacing.md for the method and what it promises.
     """
-    model = replace(model, free=model.free & _can_move(model))
+    model = replace(model, free=model.movable)
     found = _planned(model, task)
     one_way = (model.limits.speed_lower == 0.0) | (model.limits.speed_upper == 0.0)
     if isinstance(found, Refusal) and np.any(model.free & one_way):
@@ -125,15 +125,6 @@ def _planned(model: Model, task: MotionTask) -> PlannedMotion | Refusal:
             break
         reserve *= _RESERVE_GROWTH
     return found
-
-
-def _can_move(model: Model) -> NDArray[np.bool_]:
-    """Joints that no limit holds in place: who may not speed up, or not slow down, cannot go anywhere."""
-    limits = model.limits
-    held = (limits.speed_lower == 0.0) & (limits.speed_upper == 0.0)
-    held |= (limits.acceleration_lower == 0.0) | (limits.acceleration_upper == 0.0)
-    held |= limits.position_lower == limits.position_upper
-    return np.asarray(~held)
 
 
 def _with_reserve(

@@ -9,9 +9,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from irlx.transform.precision import EMPTY_INTERVAL
 from irlx.transform.qp.solver import Array, QpSolution
 
 _ROUNDING = 1e-12
+_NO_SLOPE = 1e-13
 _DEPENDENT = 1e-11
 _MEETING = 1e-10
 _ROUNDS_PER_ROW = 10
@@ -22,9 +24,13 @@ class DualSolver:
 
     def solve(self, rows: Array, lower: Array, upper: Array) -> QpSolution:
         """Solve min 1/2 |z|^2 with lower <= A z <= upper, A of shape (n, r)."""
-        if np.any(lower > upper):
+        lengths = np.sqrt(np.einsum("ij,ij->i", rows, rows))
+        # A row of rounding alone, of a joint that only the path moves, must not be taken for a slope.
+        flat = lengths <= _NO_SLOPE * float(np.max(lengths, initial=0.0))
+        impossible = flat & ((lower > EMPTY_INTERVAL) | (upper < -EMPTY_INTERVAL))
+        if np.any(lower > upper) or np.any(impossible):
             return QpSolution(None, np.zeros(rows.shape[0], dtype=np.int8))
-        return _Iteration(rows, lower, upper).run()
+        return _Iteration(rows, np.where(flat, -np.inf, lower), np.where(flat, np.inf, upper)).run()
 
 
 class _Iteration:
