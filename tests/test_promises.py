@@ -45,7 +45,7 @@ def test_no_check_has_a_tolerance_of_its_own():
     """The verifier's modules name no small number but those that tell cases apart, which are listed here."""
     told_apart = {"arcs.py": 3, "paths.py": 3}
     found = {}
-    for path in sorted((ROOT / "src" / "irlx" / "verifier").glob("*.py")):
+    for path in sorted((ROOT / "src" / "irlx" / "verifier").rglob("*.py")):
         numbers = NUMBER.findall(re.sub(r'"""(?:.|\n)*?"""', "", path.read_text(encoding="utf-8")))
         if numbers:
             found[path.name] = len(numbers)

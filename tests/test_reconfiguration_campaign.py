@@ -31,7 +31,7 @@ import irlx
 from irlx.cell.cell import Cell
 from irlx.cell.load import load_cell
 from irlx.cell.robot_data import robot_data_folder
-from irlx.verifier.forward import forward
+from irlx.verifier.geometry.forward import forward
 from machines import machine
 
 pytestmark = [pytest.mark.req("TRF-05"), pytest.mark.req("TRF-15"), pytest.mark.req("LANG-65")]

@@ -29,7 +29,7 @@ from scipy.spatial.transform import Rotation
 
 import irlx
 from irlx.cell.robot_data import robot_data_folder
-from irlx.verifier.forward import forward
+from irlx.verifier.geometry.forward import forward
 from machines import Machine, machine
 
 pytestmark = [pytest.mark.req("TRF-14"), pytest.mark.req("TRF-06"), pytest.mark.req("MOT-20")]

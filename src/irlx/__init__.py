@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from irlx.transform.criteria.library import register
     from irlx.transform.measures.measure import Measure as Criterion
     from irlx.verification import verify
-    from irlx.verifier.report import Report
+    from irlx.verifier.findings.report import Report
 
 _HOMES = {
     "CellError": "irlx.cell.errors",
@@ -33,7 +33,7 @@ _HOMES = {
     "IrlxError": "irlx.diagnostics",
     "Program": "irlx.program",
     "ProgramError": "irlx.program",
-    "Report": "irlx.verifier.report",
+    "Report": "irlx.verifier.findings.report",
     "Run": "irlx.report.run",
     "RunError": "irlx.report.run",
     "RunInterrupted": "irlx.report.run",

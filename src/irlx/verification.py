@@ -25,9 +25,9 @@ from irlx.streams.formats import format_of, scan_stream
 from irlx.streams.joint_stream import StreamHeader
 from irlx.streams.scan import scan_of
 from irlx.verifier import Reference, Report, verify_scans
-from irlx.verifier.findings import FAILED, OK, Check
+from irlx.verifier.findings.finding import FAILED, OK, Check
+from irlx.verifier.judges.program_blocks import Unanswerable, blocks_differ
 from irlx.verifier.outline import Outline, Scans
-from irlx.verifier.program_blocks import Unanswerable, blocks_differ
 
 if TYPE_CHECKING:
     # Not imported: a run brings along all that made it, of which nothing is wanted here.

@@ -17,7 +17,7 @@ from irlx.cell.load import load_cell
 from irlx.robot.description import RobotDescription
 from irlx.streams import BlockRecord, JointStream, write_stream
 from irlx.verifier import Report
-from irlx.verifier.forward import forward
+from irlx.verifier.geometry.forward import forward
 
 ARM_CELL = """[robot]
 model = "arm7"

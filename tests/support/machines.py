@@ -22,7 +22,7 @@ from irlx.robot.description import RobotDescription
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
 from irlx.transform.criteria.least_motion import LeastMotion
-from irlx.verifier.forward import forward
+from irlx.verifier.geometry.forward import forward
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from irlx.pacing.slowdown.grid import PathGrid, path_grid
 from irlx.pacing.slowdown.reserve import RESERVE, reserved
 from irlx.robot.limits import JointLimits
 from irlx.transform.criteria.least_motion import LeastMotion
-from irlx.verifier.forward import forward
+from irlx.verifier.geometry.forward import forward
 from machines import Machine, least_motion, machine
 
 WAYS = {"arm7": (0.0, -0.25, 0.05), "koch11": (-1.2, 0.8, 0.3)}

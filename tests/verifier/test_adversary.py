@@ -41,7 +41,7 @@ from irlx.cell.load import load_cell
 from irlx.cli.main import main
 from irlx.streams import JointStream, write_stream
 from irlx.verifier import Report
-from irlx.verifier.forward import forward
+from irlx.verifier.geometry.forward import forward
 
 pytestmark = pytest.mark.req("STR-06")
 

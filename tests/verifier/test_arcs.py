@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from irlx.blocks import ArcCourse, PoseTarget
 from irlx.streams import BlockRecord, read_stream, write_stream
 from irlx.verifier import verify_stream
-from irlx.verifier.arcs import ArcWay, arc_shape
+from irlx.verifier.geometry.arcs import ArcWay, arc_shape
 
 pytestmark = [pytest.mark.req("MOT-20"), pytest.mark.req("STR-06")]
 

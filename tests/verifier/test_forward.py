@@ -11,8 +11,8 @@ from irlx.cell.load import load_cell
 from irlx.cell.named import named_urdf, robot_names
 from irlx.diagnostics import Place
 from irlx.robot.urdf import read_urdf
-from irlx.verifier.forward import forward
-from irlx.verifier.rotations import (
+from irlx.verifier.geometry.forward import forward
+from irlx.verifier.geometry.rotations import (
     about_axis,
     angle_between,
     from_quaternion,

@@ -33,7 +33,7 @@ def imports(path: Path) -> set[str]:
 
 
 @pytest.mark.req("STR-06")
-@pytest.mark.parametrize("path", sorted((SOURCE / "verifier").glob("*.py")), ids=lambda path: path.name)
+@pytest.mark.parametrize("path", sorted((SOURCE / "verifier").rglob("*.py")), ids=lambda path: path.name)
 def test_a_module_imports_only_what_is_shared(path):
     used = imports(path)
     of_irlx = {name for name in used if name.split(".")[0] == "irlx"}

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from irlx.verifier.paths import LineWay
+from irlx.verifier.geometry.paths import LineWay
 
 START = (np.array([0.3, -0.2, 0.5]), Rotation.from_rotvec([0.2, 0.5, -0.4]))
 

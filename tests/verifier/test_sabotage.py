@@ -29,7 +29,7 @@ from irlx.robot.description import RobotDescription
 from irlx.streams import BlockRecord, JointStream, read_stream, write_stream
 from irlx.streams.header_plain import header_to_plain
 from irlx.verifier import Report, rows
-from irlx.verifier.forward import forward
+from irlx.verifier.geometry.forward import forward
 from machines import machine
 
 pytestmark = pytest.mark.req("STR-06")

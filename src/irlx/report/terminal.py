@@ -8,7 +8,7 @@ from math import degrees
 from irlx.report.events import LimitActive, Slowed
 from irlx.report.summary import LimitUse, Summary
 from irlx.verifier import Report
-from irlx.verifier.table import printable
+from irlx.verifier.findings.table import printable
 
 _LABEL = 12
 _MOST_SPANS = 4

@@ -5,9 +5,9 @@ and no code with what makes streams: forward kinematics, differences and geometr
 """
 
 from irlx.verifier.checks import CHECKS, verify_scans, verify_stream
-from irlx.verifier.findings import Check, Finding
-from irlx.verifier.provenance import Reference
-from irlx.verifier.report import Report
+from irlx.verifier.findings.finding import Check, Finding
+from irlx.verifier.findings.report import Report
+from irlx.verifier.judges.provenance import Reference
 
 __all__ = [
     "CHECKS",

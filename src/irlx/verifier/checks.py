@@ -14,19 +14,19 @@ from irlx.robot.limits import JointLimits
 from irlx.streams.error import StreamError
 from irlx.streams.joint_stream import JointStream
 from irlx.streams.scan import scan_of
-from irlx.verifier.closure import ClosureChecks
 from irlx.verifier.evidence import Evidence
-from irlx.verifier.findings import FAILED, NO_CASE, NOT_CHECKED, OK, Check, Subject
-from irlx.verifier.joint_moves import JointMoveChecks
-from irlx.verifier.limit_checks import LimitChecks, StartCheck
+from irlx.verifier.findings.finding import FAILED, NO_CASE, NOT_CHECKED, OK, Check, Subject
+from irlx.verifier.findings.report import Report
+from irlx.verifier.judges.closure import ClosureChecks
+from irlx.verifier.judges.joint_moves import JointMoveChecks
+from irlx.verifier.judges.limits_kept import LimitChecks, StartCheck
+from irlx.verifier.judges.provenance import RateChecks, Reference, ToolChecks, check_robot, check_robot_limits
+from irlx.verifier.judges.reconfigurations import ReconfigurationChecks
+from irlx.verifier.judges.stillness import FrozenChecks, StopChecks
+from irlx.verifier.judges.tool_moves import ToolMoveChecks
 from irlx.verifier.moves import check_blocks
 from irlx.verifier.outline import Outline, Scans, check_complete, check_finite, check_ticks, outline_of
-from irlx.verifier.provenance import RateChecks, Reference, ToolChecks, check_robot, check_robot_limits
-from irlx.verifier.reconfigurations import ReconfigurationChecks
-from irlx.verifier.report import Report
 from irlx.verifier.rows import Rows, rows_of
-from irlx.verifier.stillness import FrozenChecks, StopChecks
-from irlx.verifier.tool_moves import ToolMoveChecks
 
 ProgramCheck = Callable[[Outline], Check]
 """Compares the blocks of a stream with those of a program."""

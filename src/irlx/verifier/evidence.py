@@ -10,12 +10,12 @@ import numpy as np
 from irlx.blocks import JointTarget, PoseTarget
 from irlx.robot.description import RobotDescription
 from irlx.streams.joint_stream import Floats
-from irlx.verifier.forward import forward
+from irlx.verifier.findings.tally import Tally
+from irlx.verifier.geometry.forward import forward
+from irlx.verifier.geometry.rotations import from_quaternion
 from irlx.verifier.limits import LimitsInForce, limits_in_force
 from irlx.verifier.moves import MoveRows, moves_of
 from irlx.verifier.outline import Outline
-from irlx.verifier.rotations import from_quaternion
-from irlx.verifier.tally import Tally
 
 Pose = tuple[Floats, Floats]
 """Position (3,) m and rotation (3, 3) of the tool."""

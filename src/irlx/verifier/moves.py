@@ -19,7 +19,7 @@ from irlx.blocks import (
 )
 from irlx.promises import UNIT_LENGTH
 from irlx.streams.joint_stream import Integers
-from irlx.verifier.findings import FAILED, NOT_CHECKED, OK, Check
+from irlx.verifier.findings.finding import FAILED, NOT_CHECKED, OK, Check
 from irlx.verifier.outline import Outline
 
 

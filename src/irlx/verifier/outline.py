@@ -13,7 +13,7 @@ from irlx.promises import LONGEST_TICK, SHORTEST_TICK
 from irlx.streams.error import StreamError
 from irlx.streams.joint_stream import BlockRecord, Floats, Integers, StreamHeader
 from irlx.streams.scan import RowBatch, ScanItem, StreamEnd
-from irlx.verifier.findings import FAILED, NOT_CHECKED, OK, Check, Finding
+from irlx.verifier.findings.finding import FAILED, NOT_CHECKED, OK, Check, Finding
 
 END_DAMAGE = ("IRL702", "IRL704")
 """Damage that is found at the end of a file, all of it having been read."""

@@ -13,7 +13,7 @@ from irlx.robot.description import RobotDescription
 from irlx.streams.error import StreamError
 from irlx.streams.joint_stream import Floats, Integers
 from irlx.streams.scan import RowBatch, ScanItem, StatedRates
-from irlx.verifier.forward import forward
+from irlx.verifier.geometry.forward import forward
 from irlx.verifier.outline import Outline, Scans
 
 PORTION = 4096

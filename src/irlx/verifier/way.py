@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from irlx.blocks import ArcCourse, MoveKind
-from irlx.verifier.arcs import ArcWay, arc_shape
 from irlx.verifier.evidence import Evidence, Pose
+from irlx.verifier.geometry.arcs import ArcWay, arc_shape
+from irlx.verifier.geometry.paths import LineWay
 from irlx.verifier.moves import MoveRows
-from irlx.verifier.paths import LineWay
 
 
 @dataclass(frozen=True, eq=False)

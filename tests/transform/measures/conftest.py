@@ -13,7 +13,7 @@ import pytest
 from irlx.robot.description import Inertial, Joint, JointKind, RobotDescription
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
-from irlx.verifier.forward import forward
+from irlx.verifier.geometry.forward import forward
 from machines import machine
 
 SEEDS = range(12)

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from irlx.diagnostics import Diagnostic, Place, report
-from irlx.verifier.findings import FAILED, NO_CASE, NOT_CHECKED, OK, Check, Subject
-from irlx.verifier.table import plain_checks, text_table, verdict_of
+from irlx.verifier.findings.finding import FAILED, NO_CASE, NOT_CHECKED, OK, Check, Subject
+from irlx.verifier.findings.table import plain_checks, text_table, verdict_of
 
 
 @dataclass(frozen=True)

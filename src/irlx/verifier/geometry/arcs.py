@@ -8,7 +8,7 @@ import numpy as np
 
 from irlx.blocks import ArcCourse
 from irlx.streams.joint_stream import Floats
-from irlx.verifier.paths import LineWay, PathDeviation, Turn
+from irlx.verifier.geometry.paths import LineWay, PathDeviation, Turn
 
 LEAST_HEIGHT = 1e-7
 """Three points that are nearer to a line than this, m, make no circle: a tenth of what a move needs."""

@@ -19,9 +19,9 @@ from irlx.blocks import (
 )
 from irlx.promises import CLOSURE, RETURN, TOUCH
 from irlx.verifier.evidence import Evidence, Pose
-from irlx.verifier.findings import NOT_CHECKED, Check
+from irlx.verifier.findings.finding import NOT_CHECKED, Check
+from irlx.verifier.geometry.rotations import angle_between
 from irlx.verifier.moves import MoveRows
-from irlx.verifier.rotations import angle_between
 from irlx.verifier.rows import Rows, Stretch
 from irlx.verifier.way import course_of
 

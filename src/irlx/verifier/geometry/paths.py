@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.streams.joint_stream import Floats
-from irlx.verifier.rotations import about_axis, angle_between, rotation_vectors
+from irlx.verifier.geometry.rotations import about_axis, angle_between, rotation_vectors
 
 TURN_RULES = 1e-3
 """A path shorter than this many m per rad of its turn takes its parameter from the angle: the position

@@ -7,8 +7,8 @@ import numpy as np
 from irlx.blocks import ReconfigureBlock
 from irlx.promises import PATH_ORIENTATION, PATH_POSITION, PROGRAM_EXCESS
 from irlx.verifier.evidence import Evidence, Pose
-from irlx.verifier.findings import Check
-from irlx.verifier.rotations import angle_between
+from irlx.verifier.findings.finding import Check
+from irlx.verifier.geometry.rotations import angle_between
 from irlx.verifier.rows import Rows, Stretch
 
 

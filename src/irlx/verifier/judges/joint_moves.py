@@ -8,7 +8,7 @@ from irlx.blocks import JointTarget, MoveKind
 from irlx.promises import JOINT_LINE
 from irlx.streams.joint_stream import Floats
 from irlx.verifier.evidence import Evidence
-from irlx.verifier.findings import Check
+from irlx.verifier.findings.finding import Check
 from irlx.verifier.moves import MoveRows
 from irlx.verifier.rows import Rows, Stretch
 

@@ -11,8 +11,8 @@ from irlx.robot.description import RobotDescription
 from irlx.robot.limits import JointLimits
 from irlx.streams.joint_stream import Floats, StreamHeader
 from irlx.verifier.evidence import Evidence
-from irlx.verifier.findings import FAILED, NOT_CHECKED, OK, Check
-from irlx.verifier.rotations import angle_between, from_quaternion
+from irlx.verifier.findings.finding import FAILED, NOT_CHECKED, OK, Check
+from irlx.verifier.geometry.rotations import angle_between, from_quaternion
 from irlx.verifier.rows import Rows
 
 

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from irlx.promises import LIMIT_EXCESS, SAME_NUMBER, rounding_allowance
 from irlx.streams.joint_stream import Floats, Integers
 from irlx.verifier.evidence import Evidence
-from irlx.verifier.findings import Check
+from irlx.verifier.findings.finding import Check
+from irlx.verifier.findings.tally import Tally
 from irlx.verifier.rows import Rows
-from irlx.verifier.tally import Tally
 
 _UNITS = {"position": "rad|m", "speed": "rad/s|m/s", "acceleration": "rad/s2|m/s2"}
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isfinite
 from typing import Any
 
-from irlx.verifier.findings import FAILED, NO_CASE, NOT_CHECKED, OK, Check, Finding, Subject
+from irlx.verifier.findings.finding import FAILED, NO_CASE, NOT_CHECKED, OK, Check, Finding, Subject
 
 _STATUSES = (OK, FAILED, NOT_CHECKED, NO_CASE)
 _COLUMNS = ("check", "status", "worst", "allowed", "where")

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from irlx.blocks import FreezeBlock
 from irlx.streams.joint_stream import Floats
 from irlx.verifier.evidence import Evidence
-from irlx.verifier.findings import Check
+from irlx.verifier.findings.finding import Check
 from irlx.verifier.rows import Rows, Stretch
 
 

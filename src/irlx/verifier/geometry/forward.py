@@ -6,7 +6,7 @@ import numpy as np
 
 from irlx.robot.description import Joint, JointKind, RobotDescription
 from irlx.streams.joint_stream import Floats
-from irlx.verifier.rotations import cross_matrix, from_rpy
+from irlx.verifier.geometry.rotations import cross_matrix, from_rpy
 
 
 def forward(robot: RobotDescription, q: Floats) -> tuple[Floats, Floats]:

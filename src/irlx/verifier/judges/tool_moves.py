@@ -17,10 +17,10 @@ from irlx.promises import (
 )
 from irlx.streams.joint_stream import Floats
 from irlx.verifier.evidence import Evidence, Pose
-from irlx.verifier.findings import Check
+from irlx.verifier.findings.finding import Check
+from irlx.verifier.geometry.paths import LineWay
+from irlx.verifier.geometry.rotations import angle_between
 from irlx.verifier.moves import MoveRows
-from irlx.verifier.paths import LineWay
-from irlx.verifier.rotations import angle_between
 from irlx.verifier.rows import Rows, Stretch
 from irlx.verifier.way import Course, course_of
 

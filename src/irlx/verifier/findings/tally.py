@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from irlx.streams.joint_stream import Floats, Integers
-from irlx.verifier.findings import FAILED, NO_CASE, NOT_CHECKED, OK, Check, Finding
+from irlx.verifier.findings.finding import FAILED, NO_CASE, NOT_CHECKED, OK, Check, Finding
 from irlx.verifier.outline import Outline
 
 

@@ -1,0 +1,1 @@
+"""What checks find, and how it is told."""

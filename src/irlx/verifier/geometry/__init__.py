@@ -1,0 +1,1 @@
+"""Geometry by the verifier's own formulas: rotations, forward kinematics, lines, arcs."""
