@@ -421,6 +421,24 @@ def under_frozen_joints(d: Drawing) -> None:
     d.free()
 
 
+CRITERIA = ("MANIPULABILITY", "SMALLEST_SINGULAR_VALUE", "JOINT_CENTRING", "JOINT_BARRIER", "KINETIC_ENERGY")
+
+
+def under_criteria(d: Drawing) -> None:
+    """Lines drawn by one criterion, then by two."""
+    one, other = (str(name) for name in d.rng.permutation(CRITERIA)[:2])
+    gain = "" if one == "KINETIC_ENERGY" else f", GAIN := {number(d.rng.uniform(1.0, 40.0))}"
+    d.add(f"CRITERION {one} WEIGHT := {number(d.rng.uniform(0.2, 3.0))}{gain};")
+    d.add(f"MOVE LIN {d.pose(*d.near())}{d.parameters()};")
+    d.add(f"MOVE LIN {d.pose(*d.near())} WITH CRITERION {other};", f"CRITERIONEND {one};")
+
+
+def reconfiguration_to_a_posture_of_the_pose(d: Drawing) -> None:
+    """The posture that a PTP to where the tool is would end in: nothing, or next to it."""
+    pose = d.pose(*d.near())
+    d.add(f"MOVE LIN {pose};", f"RECONFIGURATION POSTURE({pose});")
+
+
 MOTIONS: dict[str, Callable[[Drawing], None]] = {
     made.__name__.replace("_", " "): made
     for made in (
@@ -449,6 +467,8 @@ MOTIONS: dict[str, Callable[[Drawing], None]] = {
         reconfiguration_from_the_posture,
         circle_to_a_posture,
         ptp_to_a_posture,
+        under_criteria,
+        reconfiguration_to_a_posture_of_the_pose,
     )
 }
 """What a program may be dealt, by its name in words."""
