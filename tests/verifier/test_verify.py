@@ -287,6 +287,16 @@ def test_an_active_limit_excuses_from_closing(gantry_kit, robot) -> None:
     assert_caught(run(0.0), "cyclic closure", {})
 
 
+def test_a_limit_met_after_a_return_does_not_excuse_it(gantry_kit, robot) -> None:
+    maker = gantry_kit.Maker(np.array([0.0, 0.5, 0.25, 0.4, 0.3, 0.2, -0.1]))
+    maker.record(gantry_kit.CyclicBlock, active=True)
+    maker.lin((0.7, 0.25, 0.4), rail=0.1)
+    maker.lin((0.5, 0.25, 0.4), rail=-0.05)
+    row = maker.tick
+    maker.lin((0.5, 2.0, 0.4))
+    assert_caught(verify_stream(maker.stream(), robot), "cyclic closure", {"tick": row, "joint": "rail"})
+
+
 def test_incomplete_streams_fail_only_in_being_incomplete(good: JointStream, robot) -> None:
     cut = take(good, np.arange(70))
     records = tuple(record for record in good.records if record.tick < 69)

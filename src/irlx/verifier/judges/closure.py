@@ -60,7 +60,7 @@ class ClosureChecks:
         self._count, self._judged = 0, 0
         joints = evidence.outline.header.joints
         self._active_last, self._moved_before = np.zeros(joints, dtype=np.bool_), False
-        self._held_since: dict[int, bool] = dict.fromkeys(self._starts, False)
+        self._first_held: dict[int, int] = {}
 
     def take(self, rows: Rows) -> None:
         """Add a portion."""
@@ -88,16 +88,19 @@ class ClosureChecks:
                     self._end(int(stretch.rows[-1]), found, goal)
 
     def _watch_positions(self, rows: Rows) -> None:
-        """Keep whether a joint met a position limit since each CYCLICSTART, which may have led it away."""
-        if all(self._held_since.values()):
+        """Keep the first row behind each CYCLICSTART in which a joint met a position limit, which may have led
+        the posture away."""
+        waiting = self._starts - self._first_held.keys()
+        if not waiting:
             return
         lower, upper = self._evidence.limits.bounds("position", rows.first, len(rows))
         reach = TOUCH * np.maximum(1.0, np.abs(rows.q))
         met = (((rows.q >= upper - reach) | (rows.q <= lower + reach)) & (lower < upper)).any(axis=1)
-        if met.any():
-            last = rows.first + int(np.flatnonzero(met)[-1])
-            for start in self._held_since:
-                self._held_since[start] = self._held_since[start] or last > start
+        at = rows.first + np.flatnonzero(met)
+        for start in waiting:
+            behind = at[at > start]
+            if behind.size:
+                self._first_held[start] = int(behind[0])
 
     def _watch_limits(self, rows: Rows, stretch: Stretch) -> None:
         """Keep which joints are at a limit in the last row that moves, or in the one after."""
@@ -135,7 +138,8 @@ class ClosureChecks:
             return
         evidence = self._evidence
         difference = np.abs(evidence.posture(row) - evidence.posture(found.start))
-        held = bool((self._active_last & (difference > CLOSURE)).any()) or self._held_since[found.start]
+        held = bool((self._active_last & (difference > CLOSURE)).any())
+        held = held or self._first_held.get(found.start, row + 1) <= row
         closed = bool((difference <= CLOSURE).all())
         judged = closed or not (found.led_away or held)
         self._count += 1
