@@ -308,7 +308,7 @@ def _why(fibre: Fibre, tangent: Tangent) -> FlowEnd:
     if tangent.projected <= max(ALMOST_AT_REST, 1e3 * _ROUNDING * _steepness(tangent)):
         return FlowEnd.NEAREST
     columns = tangent.jacobian[:, tangent.movable]
-    values = scaled_singular_values(columns, fibre.kinematics.description.reach)
+    values = scaled_singular_values(columns, fibre.kinematics.row_scale)
     return FlowEnd.SINGULAR if values[-1] < SINGULAR_RATIO * values[0] else FlowEnd.STALLED
 
 
