@@ -44,7 +44,6 @@ STATEMENTS = [
 
 DECLARATIONS = [
     ("FROM tools IMPORT grip;", "FROM .. IMPORT", "FROM tools IMPORT grip"),
-    ("IMPORT DATALIST points;", "IMPORT DATALIST", "IMPORT DATALIST points"),
     ("CONST INT: k := 1; EXPORT k;", "EXPORT", "EXPORT k"),
     ("ROBOT r := left;", "ROBOT", "ROBOT r := left"),
     ("STANDARD_OUT = screen;", "STANDARD_IN and STANDARD_OUT", "STANDARD_OUT = screen"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator
+from collections.abc import Generator, Iterator, Sequence
 from math import radians
 
 from irlx.blocks import (
@@ -41,6 +41,7 @@ from irlx.interpreter.types import POSE, POSITION, STRING, Record, Type
 from irlx.interpreter.unanswered import Unanswered
 from irlx.interpreter.values import RecordValue, Value, is_set
 from irlx.language import tree
+from irlx.language.data_lists import ImportedList
 
 Answer = tuple[float, ...] | None
 Blocks = Generator[Block | Question, Answer, None]
@@ -52,20 +53,25 @@ _LIMIT_TYPES = {
 }
 
 
-def interpret(program: tree.Program, source: SourceText, setting: Setting) -> Blocks:
+def interpret(
+    program: tree.Program, source: SourceText, setting: Setting, lists: Sequence[ImportedList] = ()
+) -> Blocks:
     """Run a program: yields its blocks in order, and questions whose answers are sent back in.
 
-    Raises InterpreterError at the statement that goes wrong; the blocks before it stay valid.
+    `lists` are the data lists that it imports. Raises InterpreterError at the statement that goes wrong; the
+    blocks before it stay valid.
     """
-    return _Interpreter(program, source, setting).run()
+    return _Interpreter(program, source, setting, lists).run()
 
 
 class _Interpreter:
-    def __init__(self, program: tree.Program, source: SourceText, setting: Setting) -> None:
+    def __init__(
+        self, program: tree.Program, source: SourceText, setting: Setting, lists: Sequence[ImportedList]
+    ) -> None:
         self._program = program
         self._source = source
         self._setting = setting
-        self._scope = declared_scope(program, source, setting)
+        self._scope = declared_scope(program, source, setting, lists)
         self._answers: dict[AskPostureOf, Value] = {}
         self._evaluator = Evaluator(source, self._scope, self._answers)
         self._blocks = 0
