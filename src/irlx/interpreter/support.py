@@ -101,9 +101,6 @@ def missing_in_move(move: tree.Move) -> tuple[tree.Node, str] | None:
     for clause in move.clauses:
         if not isinstance(clause, _CLAUSES):
             return clause, part_name(clause)
-        postures = clause.targets if isinstance(clause, tree.WithReconfiguration) else ()
-        if move.kind == "CIRCLE" and len(postures) == len(move.targets):
-            return postures[0], "a posture for the via point"
     return None
 
 
