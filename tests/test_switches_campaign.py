@@ -182,7 +182,9 @@ class Drawing:
             limits[asked] = pair
         drawn = self.state.cyclic
         if kind in {"LIN", "CIRCLE"} and not clauses and self.rng.random() < 0.2:
-            clauses, drawn = f" WITH RECONFIGURATION {self.joints()}", True
+            count = int(self.rng.integers(1, 3)) if kind == "CIRCLE" else 1
+            clauses = f" WITH RECONFIGURATION {', '.join(self.joints() for _ in range(count))}"
+            drawn = True
         target = {
             "LIN": lambda: f"LIN {self.pose()}",
             "CIRCLE": lambda: f"CIRCLE {self.pose()}, {self.pose()}",

@@ -152,8 +152,8 @@ class Execution:
 
     def _blocks(self, answer: Callable[[Question], tuple[float, ...]]) -> Iterator[Block]:
         """Blocks as the interpreter yields them, its questions answered on the way."""
-        job = self.job
-        source = interpret(job.program.tree, job.program.source, setting_of(job.cell))
+        job, program = self.job, self.job.program
+        source = interpret(program.tree, program.source, setting_of(job.cell), program.data_lists)
         reply = None
         while True:
             try:

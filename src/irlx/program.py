@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from irlx.diagnostics import Diagnostic, IrlxError, Place, SourceText, report
 from irlx.diagnostics.near_files import near_files
 from irlx.language import tree
 from irlx.language.analysis import Analysis, analyse
+from irlx.language.data_lists import ImportedList
 from irlx.language.source import decode_source
 from irlx.language.tree.nodes import Name
 
@@ -24,14 +26,26 @@ class ProgramError(IrlxError):
 
 
 @dataclass(frozen=True)
+class DataListFile(ImportedList):
+    """A data list that a program imports: its file, text, tree, and the SHA-256 of the file's bytes."""
+
+    path: Path
+    sha256: str
+
+
+@dataclass(frozen=True)
 class Program:
-    """A program without errors: its file, text, tree and the warnings of its analysis."""
+    """A program without errors: its file, text, tree, the warnings of its analysis, and its data lists.
+
+    `sha256` is that of the file's bytes; with data lists it covers them as well, see `digest_of_all`.
+    """
 
     path: Path
     source: SourceText
     tree: tree.Program
     diagnostics: tuple[Diagnostic, ...]
     sha256: str
+    data_lists: tuple[DataListFile, ...] = ()
 
     @property
     def name(self) -> str:
@@ -51,17 +65,31 @@ def load(path: PathLike, cell: PathLike | None = None) -> Program:
     wrong with the cell is not told here.
     """
     file = Path(path)
-    content = _content(file)
-    analysis = _analysis(file, content, cell)
+    content, files = _content(file), _ListFiles(file)
+    analysis = _analysis(file, content, cell, files)
     if analysis.has_errors or not isinstance(analysis.tree, tree.Program):
-        raise ProgramError(_with_module(analysis))
-    digest = hashlib.sha256(content).hexdigest()
-    return Program(file, analysis.source, analysis.tree, analysis.diagnostics, digest)
+        raise ProgramError(_why_no_program(analysis))
+    lists = tuple(files.file_of(found) for found in analysis.data_lists)
+    digest = digest_of_all(hashlib.sha256(content).hexdigest(), lists)
+    return Program(file, analysis.source, analysis.tree, analysis.diagnostics, digest, lists)
+
+
+def digest_of_all(program: str, lists: Sequence[DataListFile]) -> str:
+    """SHA-256 of a program and its data lists, in order, from that of the program's file.
+
+    Without lists it is that of the file; else that of the text with one digest a line, each line with its
+    end: what ``sha256sum p.irl points.dat | cut -c-64 | sha256sum`` prints.
+    """
+    if not lists:
+        return program
+    lines = "".join(f"{digest}\n" for digest in (program, *(found.sha256 for found in lists)))
+    return hashlib.sha256(lines.encode("ascii")).hexdigest()
 
 
 def analyse_file(path: PathLike, cell: PathLike | None = None) -> Analysis:
-    """Analysis of a program or module file. Raises ProgramError where the file cannot be read."""
-    return _analysis(Path(path), _content(Path(path)), cell)
+    """Analysis of a program, module or data list file. Raises ProgramError where the file cannot be read."""
+    file = Path(path)
+    return _analysis(file, _content(file), cell, _ListFiles(file))
 
 
 def cell_path(program: Program, given: PathLike | None) -> Path:
@@ -86,7 +114,32 @@ def _specification(root: tree.Program) -> Name | None:
     return None
 
 
-def _analysis(path: Path, content: bytes, cell: PathLike | None) -> Analysis:
+class _ListFiles:
+    """Reads the data lists beside a program, and keeps what there is to know of their files."""
+
+    def __init__(self, program: Path) -> None:
+        self._program = program
+        self._read: dict[str, tuple[Path, str]] = {}
+
+    def __call__(self, name: str, place: Place) -> SourceText:
+        """Text of the data list of a name. Raises IrlxError: IRL240, IRL241 at `place`, IRL130, IRL131."""
+        path = self._program.with_name(f"{name}.dat")
+        try:
+            content = path.read_bytes()
+        except FileNotFoundError:
+            raise IrlxError(report("IRL240", place, name=name, path=path, near=near_files(path))) from None
+        except (OSError, ValueError) as cause:
+            words = "it is a folder" if isinstance(cause, IsADirectoryError) else _words(cause)
+            raise IrlxError(report("IRL241", place, name=name, path=path, cause=words)) from None
+        self._read[str(path)] = path, hashlib.sha256(content).hexdigest()
+        return decode_source(str(path), content)
+
+    def file_of(self, found: ImportedList) -> DataListFile:
+        """A data list with its file."""
+        return DataListFile(found.source, found.tree, *self._read[found.source.name])
+
+
+def _analysis(path: Path, content: bytes, cell: PathLike | None, files: _ListFiles) -> Analysis:
     """Analysis of the bytes of a file. Raises ProgramError for bytes that are no text."""
 
     def cell_names(root: tree.Program) -> tuple[str, ...]:
@@ -96,17 +149,18 @@ def _analysis(path: Path, content: bytes, cell: PathLike | None) -> Analysis:
         return next((frame_names(candidate) for candidate in found), ())
 
     try:
-        return analyse(decode_source(str(path), content), cell_names=cell_names)
+        return analyse(decode_source(str(path), content), cell_names=cell_names, data_lists=files)
     except IrlxError as error:
         raise ProgramError(error.diagnostics) from error
 
 
-def _with_module(analysis: Analysis) -> tuple[Diagnostic, ...]:
-    """Findings of a file that is no usable program; a module without errors gets one."""
+def _why_no_program(analysis: Analysis) -> tuple[Diagnostic, ...]:
+    """Findings of a file that is no usable program; a module or data list without errors gets one."""
     if analysis.has_errors or analysis.tree is None:
         return analysis.diagnostics
     place = Place.in_text(analysis.source, analysis.tree.name.span)
-    return (*analysis.diagnostics, report("IRL008", place, name=analysis.tree.name.name))
+    kind = type(analysis.tree).__name__.upper()
+    return (*analysis.diagnostics, report("IRL008", place, name=analysis.tree.name.name, kind=kind))
 
 
 def _content(path: Path) -> bytes:
@@ -117,5 +171,8 @@ def _content(path: Path) -> bytes:
     except IsADirectoryError:
         raise ProgramError(report("IRL007", path=path)) from None
     except (OSError, ValueError) as cause:
-        words = cause.strerror if isinstance(cause, OSError) and cause.strerror else str(cause)
-        raise ProgramError(report("IRL002", path=path, cause=words)) from None
+        raise ProgramError(report("IRL002", path=path, cause=_words(cause))) from None
+
+
+def _words(cause: OSError | ValueError) -> str:
+    return cause.strerror if isinstance(cause, OSError) and cause.strerror else str(cause)

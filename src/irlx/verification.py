@@ -134,7 +134,9 @@ def _program_check(program: Program, cell: Cell | None, may_lack_blocks: bool, o
     header = outline.header
     findings, unsaid = [], ""
     if program.sha256 != header.program_sha256:
-        findings.append(f"the stream was made from {header.program_name} with another text")
+        lists = ", ".join(found.path.name for found in program.data_lists)
+        other = f"another text, or other values in {lists}" if lists else "another text"
+        findings.append(f"the stream was made from {header.program_name} with {other}")
     if may_lack_blocks and not outline.records:
         unsaid = "its text only: the stream carries no blocks"
     elif cell is None:
@@ -147,7 +149,7 @@ def _program_check(program: Program, cell: Cell | None, may_lack_blocks: bool, o
 
 def _replayed(program: Program, cell: Cell, outline: Outline) -> Iterator[Block]:
     """Blocks of a program whose questions are answered by the stream: nothing moves."""
-    source = interpret(program.tree, program.source, setting_of(cell))
+    source = interpret(program.tree, program.source, setting_of(cell), program.data_lists)
     reply: tuple[float, ...] | None = None
     done = 0
     while True:

@@ -48,7 +48,8 @@ criteria = st.builds(
     numbers,
     st.lists(st.builds(CriterionParam, st.text(), numbers), max_size=2).map(tuple),
 )
-courses = st.builds(ArcCourse, targets, st.none() | numbers, st.booleans())
+postures = st.none() | st.builds(JointTarget, vectors)
+courses = st.builds(ArcCourse, targets, st.none() | numbers, st.booleans(), postures)
 blocks = st.one_of(
     st.builds(HaltBlock, **common),
     st.builds(FreezeBlock, joints=st.lists(st.integers(1, 9)).map(tuple), **common),
@@ -63,7 +64,7 @@ blocks = st.one_of(
         law=laws,
         limits=st.lists(st.builds(LimitClause, kinds, ranges, origins), max_size=2).map(tuple),
         course=st.none() | courses,
-        reconfiguration=st.none() | st.builds(JointTarget, vectors),
+        reconfiguration=postures,
         criteria=st.lists(st.builds(CriterionClause, criteria, origins), max_size=2).map(tuple),
         **common,
     ),
@@ -133,6 +134,10 @@ def test_missing_fields_and_other_things() -> None:
 def test_what_older_streams_lack_has_its_default() -> None:
     old = {key: value for key, value in GOOD.items() if key not in ("course", "criteria")}
     assert block_from_plain(old) == block_from_plain(GOOD)
+    course = {"via": {"type": "JointTarget", "values": [1.0]}, "angle": None, "turns_through_via": True}
+    read = block_from_plain({**GOOD, "kind": "CIRCLE", "course": course})
+    assert isinstance(read, MoveBlock)
+    assert read.course == ArcCourse(JointTarget((1.0,)), None, True, None)
 
 
 @pytest.mark.parametrize(
@@ -142,6 +147,10 @@ def test_what_older_streams_lack_has_its_default() -> None:
         ({"angle": 1.0}, "course.via"),
         ({"via": {"type": "JointTarget", "values": [1.0]}, "angle": "all"}, "course.angle"),
         ({"via": {"type": "JointTarget", "values": [1.0]}, "turns_through_via": 1}, "turns_through_via"),
+        (
+            {"via": {"type": "JointTarget", "values": [1.0]}, "via_reconfiguration": {"values": ["a"]}},
+            "course.via_reconfiguration.values.1",
+        ),
         (3, "course"),
     ],
 )

@@ -101,6 +101,19 @@ CASES = [
         "14 MOVE PTP to joints (180 0) speed_ptp 50 % acc_ptp 100 % WITH RECONFIGURATION (180 2) line 20",
     ),
     (
+        MoveBlock(
+            id=15,
+            origin=AT,
+            kind=MoveKind.CIRCLE,
+            target=JointTarget((pi, 0.0)),
+            law=LAW,
+            course=ArcCourse(JointTarget((0.0, 0.1)), via_reconfiguration=JointTarget((-pi, 0.002))),
+            reconfiguration=JointTarget((pi, 0.003)),
+        ),
+        "15 MOVE CIRCLE via joints (0 100) to joints (180 0) speed 1000 mm/s acc 2000 mm/s2 "
+        "speed_ori 90 deg/s acc_ori 180 deg/s2 WITH RECONFIGURATION via (-180 2) to (180 3) line 20",
+    ),
+    (
         CriterionBlock(
             id=15,
             origin=AT,

@@ -9,13 +9,14 @@ import irlx
 from irlx.cli.main import main
 from irlx.diagnostics.codes.cell import CELL
 from irlx.diagnostics.codes.command import COMMAND
+from irlx.diagnostics.codes.data_lists import DATA_LISTS
 from irlx.diagnostics.codes.pacing import PACING
 from irlx.diagnostics.codes.run import RUN
 from irlx.diagnostics.codes.types import TYPES
 
 PAGES = Path(__file__).parents[2] / "docs" / "diagnostics"
-CODES = [code.id for group in (COMMAND, TYPES, PACING, RUN, CELL) for code in group]
-IN_WORDS = {"IRL090", "IRL229", "IRL523", "IRL525", "IRL614"}
+CODES = [code.id for group in (COMMAND, TYPES, DATA_LISTS, PACING, RUN, CELL) for code in group]
+IN_WORDS = {"IRL090", "IRL229", "IRL241", "IRL523", "IRL525", "IRL614"}
 """Codes that no small program for the packaged robot brings about: their pages say so in words."""
 
 PLAIN_PROGRAM = "PROGRAM demo;\nBEGIN\n  MOVE LIN POSITION(11400, 1000, 3500);\nENDPROGRAM\n"
@@ -47,6 +48,8 @@ def fence(text, kind):
 def diagnostics_of(folder, text):
     """Everything that check and run say of the program and the cell in a section of a page."""
     program, cell = folder / "demo.irl", folder / "demo.toml"
+    if fence(text, "dat"):
+        (folder / "points.dat").write_text(fence(text, "dat"), encoding="utf-8")
     program.write_text(fence(text, "irl") or PLAIN_PROGRAM, encoding="utf-8")
     cell.write_text(fence(text, "toml") or PLAIN_CELL, encoding="utf-8")
     found = list(irlx.check(program, cell=cell))

@@ -28,7 +28,7 @@ MESSAGES = {
     "IRL113": (4, 8, "number outside the range of INT"),
     "IRL114": (4, 30, "this target stands after WITH or out of order in the MOVE"),
     "IRL115": (4, 18, "comparisons cannot be chained"),
-    "IRL116": (1, 1, "expected PROGRAM or MODULE at the start, found the keyword BEGIN"),
+    "IRL116": (1, 1, "expected PROGRAM, MODULE or DATALIST at the start, found the keyword BEGIN"),
     "IRL117": (1, 1, "the file holds no program"),
     "IRL118": (4, 108, "parentheses nested deeper than 100 levels"),
     "IRL201": (4, 3, "unknown name 'lenght'; did you mean 'length'?"),

@@ -5,6 +5,8 @@ from math import radians
 import pytest
 
 from irlx.blocks import AskPosture, MoveBlock
+from irlx.language.analysis import analyse
+from irlx.language.source import source_text
 
 LAW = "speed 250 mm/s acc 1000 mm/s2 speed_ori 90 deg/s acc_ori 180 deg/s2"
 SHARE = "speed_ptp 100 % acc_ptp 100 %"
@@ -236,6 +238,33 @@ def test_one_posture_for_each_target(lines):
     assert second.endswith("WITH RECONFIGURATION (2 2 2 2) line 4")
     (arc,) = lines(variables, "MOVE CIRCLE p, p WITH RECONFIGURATION b;", joints=4)
     assert arc.endswith("WITH RECONFIGURATION (2 2 2 2) line 4")
+
+
+@pytest.mark.req("LANG-62")
+@pytest.mark.req("LANG-68")
+def test_a_posture_for_each_target_of_a_circle_or_for_each_end(lines):
+    variables = "VAR MAIN_JOINT: a := (1, 1, 1, 1), b := (2, 2, 2, 2); POSITION: p := (1, 2, 3);"
+    (arc,) = lines(variables, "MOVE CIRCLE p, p WITH RECONFIGURATION a, b;", joints=4)
+    assert arc.endswith("WITH RECONFIGURATION via (1 1 1 1) to (2 2 2 2) line 4")
+    body = "MOVE CIRCLE p, p, p, p WITH RECONFIGURATION "
+    found = lines(variables, f"{body}a, b; {body}a, b, b, a;", joints=4)
+    assert [line.partition("RECONFIGURATION ")[2] for line in found] == [
+        "(1 1 1 1) line 4",
+        "(2 2 2 2) line 4",
+        "via (1 1 1 1) to (2 2 2 2) line 4",
+        "via (2 2 2 2) to (1 1 1 1) line 4",
+    ]
+
+
+@pytest.mark.req("LANG-62")
+@pytest.mark.parametrize("count", [1, 3, 5])
+def test_any_other_number_of_postures_is_told(count):
+    postures = ", ".join(["j"] * count)
+    text = "PROGRAM t; VAR MAIN_JOINT: j; POSE: p; BEGIN MOVE CIRCLE p, p, p, p WITH RECONFIGURATION "
+    (found,) = analyse(source_text("t.irl", f"{text}{postures}; ENDPROGRAM")).diagnostics
+    assert found.code == "IRL405"
+    assert found.message == f"4 target(s), but {count} posture(s) after RECONFIGURATION"
+    assert "for each via and end point or for each end point" in found.help
 
 
 @pytest.mark.req("LANG-65")

@@ -38,7 +38,7 @@ def test_symbols_by_kind(analysed):
 
 
 @pytest.mark.req("LANG-13")
-def test_a_data_list_may_hold_any_name():
+def test_a_data_list_that_is_not_looked_at_may_hold_any_name():
     assert codes("PROGRAM t; IMPORT DATALIST points; BEGIN MOVE LIN p1; ENDPROGRAM") == []
 
 

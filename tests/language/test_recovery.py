@@ -81,7 +81,7 @@ def test_mistake_in_a_body(analysed, text):
 
 WHOLE = {
     "": ["1:1 IRL117 the file holds no program"],
-    "x": ["1:1 IRL116 expected PROGRAM or MODULE at the start, found the name 'x'"],
+    "x": ["1:1 IRL116 expected PROGRAM, MODULE or DATALIST at the start, found the name 'x'"],
     "PROGRAM t\nBEGIN ENDPROGRAM": ["1:10 IRL102 missing ';' after the PROGRAM"],
     "PROGRAM t; VAR REAL: begin; BEGIN ENDPROGRAM": ["1:22 IRL106 BEGIN is a keyword and cannot be a name"],
     "PROGRAM t;\nVAR REAL a;\n  INT: b;\nBEGIN b := 1; ENDPROGRAM": [

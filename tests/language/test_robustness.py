@@ -27,6 +27,11 @@ BEGIN
   REPEAT x := f(x); UNTIL x > 5;
 ENDPROGRAM
 """
+LIST = """DATALIST points;
+  POSE: p0 := ((600, 0, 400), ORIZYX(0, 180, 0)), datalist := p0 @ INV(p0);
+  ARRAY [1..2] OF RECORD REAL: u; ENDRECORD: rack := ((1), (2));
+ENDDATALIST
+"""
 PIECES = [*keyword_table().values(), "x", "1", "1.5", "'a'", "'", "{", "}", "(*", "*)", "\n", "§", "\0"]
 PIECES += [";", ":", ":=", "=", ",", ".", "..", "(", ")", "[", "]", "+", "-", "*", "/", "@", "<", ">="]
 
@@ -52,7 +57,7 @@ def mutated(chance, text):
 
 
 def check(text):
-    analysis = analyse(source_text("t.irl", text))
+    analysis = analyse(source_text("t.irl", text), data_lists=lambda *_: source_text("t.dat", text))
     length = len(analysis.source.text)
     for finding in analysis.diagnostics:
         assert finding.place.span.end <= length
@@ -70,7 +75,7 @@ def test_mutated_programs_never_raise(seed):
     chance = random.Random(seed)
     end = time.monotonic() + 0.8
     while time.monotonic() < end:
-        check(mutated(chance, chance.choice([PROGRAM, FORMS])))
+        check(mutated(chance, chance.choice([PROGRAM, FORMS, LIST])))
 
 
 @pytest.mark.parametrize("seed", range(2))
@@ -78,7 +83,7 @@ def test_random_words_never_raise(seed):
     chance = random.Random(seed)
     end = time.monotonic() + 0.6
     while time.monotonic() < end:
-        start = chance.choice(["", "PROGRAM t;\n", "PROGRAM t; BEGIN\n", "MODULE m;"])
+        start = chance.choice(["", "PROGRAM t;\n", "PROGRAM t; BEGIN\n", "MODULE m;", "DATALIST d;"])
         check(start + " ".join(chance.choices(PIECES, k=chance.randint(0, 60))))
 
 

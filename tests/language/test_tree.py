@@ -432,5 +432,6 @@ def test_every_rule_of_the_grammar_is_exercised():
     for source in LITERALS:
         loaded.parse(f"PROGRAM t; BEGIN x := -{source} * 2; ENDPROGRAM")
     loaded.parse("MODULE m; ENDMODULE")
+    loaded.parse("DATALIST d; ENDDATALIST")
     rules = {rule.origin.name for rule in loaded.rules}
     assert rules - used - {rule for rule in rules if rule.startswith("__")} == set()

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from irlx.motion.arc import Arc, Circle, spread
+from irlx.motion.arc import NEAREST_POINTS, Arc, Circle, spread
 from irlx.motion.errors import MotionError
-from irlx.motion.plan_circle import NEAREST_POINTS, circle_path
+from irlx.motion.plan_circle import circle_path
 
 pytestmark = [pytest.mark.req("MOT-01"), pytest.mark.req("MOT-11")]
 

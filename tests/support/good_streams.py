@@ -386,9 +386,11 @@ def line_to_a_posture(d: Drawing) -> None:
 
 
 def circle_to_a_posture(d: Drawing) -> None:
+    """With a posture for the end point, or one for the via point, too."""
+    postures = ", ".join(d.konf() for _ in range(int(d.rng.integers(1, 3))))
     via, end = circle_points(d, 60.0, 150.0)
     through = d.pose(via, d.rotation)
-    d.add(f"MOVE CIRCLE {through}, {d.pose(end, d.rotation)} WITH RECONFIGURATION {d.konf()};")
+    d.add(f"MOVE CIRCLE {through}, {d.pose(end, d.rotation)} WITH RECONFIGURATION {postures};")
 
 
 def ptp_to_a_posture(d: Drawing) -> None:

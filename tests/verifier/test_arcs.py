@@ -158,6 +158,11 @@ def wrong_blocks(kit):
     yield replace(circle, course=replace(circle.course, angle=np.inf)), "cannot turn by inf rad"
     yield replace(circle, course=ArcCourse(kit.JointTarget((1.0,)))), "1 values for 7 joints"
     yield replace(circle, course=ArcCourse(PoseTarget((0, 0, 0), (0, 0, 0, 2)))), "length 2"
+    via = ArcCourse(PoseTarget((0, 0, 0), None), via_reconfiguration=kit.JointTarget((1.0,) * 7))
+    yield replace(circle, course=via), "a posture for its via point and none for its end"
+    short = replace(via, via_reconfiguration=kit.JointTarget((1.0,)))
+    end = kit.JointTarget((0.0,) * 7)
+    yield replace(circle, course=short, reconfiguration=end), "its posture has 1 values for 7 joints"
 
 
 def test_blocks_that_are_no_circle(gantry_kit, robot) -> None:

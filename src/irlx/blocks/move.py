@@ -44,12 +44,14 @@ class ArcCourse:
 
     `angle` in rad, not 0, from the start of the move, negative backwards: the target's position then fixes
     only the plane, and its orientation is that at the end. `turns_through_via` makes the orientation of
-    `via` count; otherwise only its position does.
+    `via` count; otherwise only its position does. `via_reconfiguration` is the posture to be drawn to on the
+    way to `via`, beside the move's own `reconfiguration`.
     """
 
     via: PoseTarget | JointTarget
     angle: float | None = None
     turns_through_via: bool = False
+    via_reconfiguration: JointTarget | None = None
 
 
 @dataclass(frozen=True)
@@ -73,8 +75,9 @@ class MotionLaw:
 class MoveBlock(Block):
     """One move of the tool (LIN, CIRCLE) or of the joints (PTP) to a target; a CIRCLE has a `course`.
 
-    `reconfiguration`: posture to be drawn to on the way, the target's pose being kept; the cyclic option
-    is off for such a move. `criteria` are added for this move alone.
+    `reconfiguration`: posture to be drawn to on the way, the target's pose being kept (of a CIRCLE with a
+    posture for its via point: on the way from there); the cyclic option is off for such a move. `criteria`
+    are added for this move alone.
     """
 
     kind: MoveKind

@@ -53,8 +53,7 @@ def _(block: HaltBlock, joint_units: Sequence[str]) -> str:
 def _(block: MoveBlock, joint_units: Sequence[str]) -> str:
     words = [f"MOVE {block.kind.value}", *_way(block, joint_units), _law(block.kind, block.law)]
     words += [f"WITH {_SWITCH[clause.kind]} {_range(clause.range, joint_units)}" for clause in block.limits]
-    if block.reconfiguration is not None:
-        words.append(f"WITH RECONFIGURATION {_joint_values(block.reconfiguration.values, joint_units)}")
+    words += _postures(block, joint_units)
     words += [f"WITH CRITERION {_criterion(clause.choice)}" for clause in block.criteria]
     return " ".join(words)
 
@@ -109,6 +108,16 @@ def _way(block: MoveBlock, joint_units: Sequence[str]) -> list[str]:
         words += ["turning through via"] if block.course.turns_through_via else []
         words += [f"angle {_deg(block.course.angle)} deg"] if block.course.angle is not None else []
     return words
+
+
+def _postures(block: MoveBlock, joint_units: Sequence[str]) -> list[str]:
+    """Words for the postures that a move is drawn to; with one for the via point both are named."""
+    via = None if block.course is None else block.course.via_reconfiguration
+    end = block.reconfiguration
+    words = [] if via is None else [f"via {_joint_values(via.values, joint_units)}"]
+    if end is not None:
+        words.append(f"{'to ' if words else ''}{_joint_values(end.values, joint_units)}")
+    return ["WITH RECONFIGURATION", *words] if words else []
 
 
 def _law(kind: MoveKind, law: MotionLaw) -> str:

@@ -17,7 +17,7 @@ def add_parser(commands: Any) -> None:
         epilog=_EXAMPLE,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("programs", nargs="+", metavar="P.irl", help="program or module files")
+    parser.add_argument("programs", nargs="+", metavar="P.irl", help="program, module or data list files")
     parser.add_argument("--cell", metavar="C.toml", help="check this cell file, too")
     parser.set_defaults(command=command)
 

@@ -116,7 +116,7 @@ def _prepared(options: argparse.Namespace) -> tuple[Job, list[Path]]:
         from irlx.pipeline import prepare
 
         job = prepare(program, options.cell, options.tick, options.max_slow)
-        inputs = (program.path, Path(job.cell.file))
+        inputs = (program.path, Path(job.cell.file), *(found.path for found in program.data_lists))
         return job, output_paths(options.output, program.path, inputs)
     except IrlxError as error:
         if options.json:

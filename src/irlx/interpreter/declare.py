@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from irlx.diagnostics import SourceText
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.interpreter.errors import fail
@@ -24,11 +26,14 @@ from irlx.interpreter.types import (
 from irlx.interpreter.values import RecordValue, Value, unset_value
 from irlx.language import tree
 from irlx.language.builtins import SYSTEM_VARIABLES
+from irlx.language.data_lists import ImportedList
 from irlx.language.symbols import declared_symbols
 
 
-def declared_scope(program: tree.Program, source: SourceText, setting: Setting) -> Scope:
-    """Scope of a program: system variables, poses of the cell, then what the program declares.
+def declared_scope(
+    program: tree.Program, source: SourceText, setting: Setting, lists: Sequence[ImportedList] = ()
+) -> Scope:
+    """Scope of a program: system variables, poses of the cell, then what the program declares and imports.
 
     Raises InterpreterError: IRL202 for a predefined type defined again, IRL221, IRL222 for a joint
     type that does not fit the robot, IRL204 for an unknown type, IRL216 for a system variable
@@ -36,14 +41,16 @@ def declared_scope(program: tree.Program, source: SourceText, setting: Setting) 
     that is not executed yet, and what initial values may raise.
     """
     announced = frozenset(symbol.name.key for symbol in declared_symbols(program.declarations))
-    scope = Scope(types=predefined_types(len(setting.joint_names)), announced=announced)
+    imported = frozenset(s.name.key for found in lists for s in declared_symbols(found.tree.declarations))
+    types = predefined_types(len(setting.joint_names))
+    scope = Scope(types=types, announced=announced, imported=imported)
     for name in SYSTEM_REALS:
         scope.variables[name.casefold()] = Variable(name, REAL, float(setting.defaults[name]))
     for name, (at, turned) in setting.poses.items():
         value = RecordValue(POSE, (_reals(POSE, 0, at), _reals(POSE, 1, turned)))
         scope.variables[name.casefold()] = Variable(name, POSE, value, constant=True)
     scope.variables["r_joint_act"] = _actual_joints(scope)
-    _Declarer(source, scope, setting).program(program)
+    _Declarer(source, scope, setting).program(program, lists)
     return scope
 
 
@@ -59,13 +66,6 @@ def _actual_joints(scope: Scope) -> Variable:
     return Variable("R_JOINT_ACT", type, unset_value(type), constant=True)
 
 
-def _constants_and_types_first(
-    declarations: tuple[tree.Declaration, ...],
-) -> list[tree.Declaration]:
-    """Declarations in text order, but variables last: parts of a program come in any order."""
-    return sorted(declarations, key=lambda part: isinstance(part, tree.VarDeclaration))
-
-
 class _Declarer:
     def __init__(self, source: SourceText, scope: Scope, setting: Setting) -> None:
         self._source = source
@@ -75,16 +75,28 @@ class _Declarer:
         # Programs may define the joint types themselves; the other predefined types mean one thing.
         self._fixed = frozenset(scope.types) - frozenset(JOINT_RECORDS)
 
-    def program(self, program: tree.Program) -> None:
-        for part in _constants_and_types_first(program.declarations):
-            if isinstance(part, tree.TypeDefinition):
+    def program(self, program: tree.Program, lists: Sequence[ImportedList]) -> None:
+        """Constants and types in text order, then data lists, then variables: parts come in any order."""
+        variables: list[tree.VarDeclaration] = []
+        for part in program.declarations:
+            if isinstance(part, tree.VarDeclaration):
+                variables.append(part)
+            elif isinstance(part, tree.TypeDefinition):
                 self._define(part)
-            elif isinstance(part, tree.VarDeclaration):
-                self._variables(part.type, part.variables, constant=False)
             elif isinstance(part, tree.ConstDeclaration):
                 self._variables(part.type, part.constants, constant=True)
-            elif not isinstance(part, tree.SystemSpecification):
+            elif not isinstance(part, tree.SystemSpecification | tree.ImportDatalist):
                 raise fail("IRL590", self._source, part.span, what=part_name(part))
+        for found in lists:
+            # Values of a list know the types of the program and each other, nothing else.
+            own = Scope(types=self._scope.types)
+            _Declarer(found.source, own, self._setting).variables(found.tree.declarations)
+            self._scope.variables.update(own.variables)
+        self.variables(variables)
+
+    def variables(self, parts: Sequence[tree.VarDeclaration]) -> None:
+        for part in parts:
+            self._variables(part.type, part.variables, constant=False)
 
     def _define(self, part: tree.TypeDefinition) -> None:
         type = self._type(part.type)

@@ -180,6 +180,8 @@ class Evaluator:
         if what:
             raise fail("IRL590", self.source, name.span, what=what)
         near = "; it is declared further down" if name.key in self.scope.announced else ""
+        if name.key in self.scope.imported:
+            near = "; it comes from a data list and is a variable, of which constants know nothing"
         if not near:
             near = near_matches(name.name, [variable.name for variable in self.scope.variables.values()])
         raise fail("IRL201", self.source, name.span, name=name.name, near=near)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator
+from collections.abc import Generator, Iterator, Sequence
 from math import radians
 
 from irlx.blocks import (
@@ -41,6 +41,7 @@ from irlx.interpreter.types import POSE, POSITION, STRING, Record, Type
 from irlx.interpreter.unanswered import Unanswered
 from irlx.interpreter.values import RecordValue, Value, is_set
 from irlx.language import tree
+from irlx.language.data_lists import ImportedList
 
 Answer = tuple[float, ...] | None
 Blocks = Generator[Block | Question, Answer, None]
@@ -52,20 +53,25 @@ _LIMIT_TYPES = {
 }
 
 
-def interpret(program: tree.Program, source: SourceText, setting: Setting) -> Blocks:
+def interpret(
+    program: tree.Program, source: SourceText, setting: Setting, lists: Sequence[ImportedList] = ()
+) -> Blocks:
     """Run a program: yields its blocks in order, and questions whose answers are sent back in.
 
-    Raises InterpreterError at the statement that goes wrong; the blocks before it stay valid.
+    `lists` are the data lists that it imports. Raises InterpreterError at the statement that goes wrong; the
+    blocks before it stay valid.
     """
-    return _Interpreter(program, source, setting).run()
+    return _Interpreter(program, source, setting, lists).run()
 
 
 class _Interpreter:
-    def __init__(self, program: tree.Program, source: SourceText, setting: Setting) -> None:
+    def __init__(
+        self, program: tree.Program, source: SourceText, setting: Setting, lists: Sequence[ImportedList]
+    ) -> None:
         self._program = program
         self._source = source
         self._setting = setting
-        self._scope = declared_scope(program, source, setting)
+        self._scope = declared_scope(program, source, setting, lists)
         self._answers: dict[AskPostureOf, Value] = {}
         self._evaluator = Evaluator(source, self._scope, self._answers)
         self._blocks = 0
@@ -204,7 +210,7 @@ class _Interpreter:
             if isinstance(clause, tree.WithCriterion)
         )
         stops = _stops(statement)
-        for (via, expression), posture in zip(stops, self._postures(statement, len(stops)), strict=True):
+        for (via, expression), postures in zip(stops, self._postures(statement, len(stops)), strict=True):
             target = self._target(expression)
             origin = (
                 self._origin(via or expression, expression) if len(stops) > 1 else self._origin(statement)
@@ -216,17 +222,25 @@ class _Interpreter:
                 target=target,
                 law=law,
                 limits=limits,
-                course=None if via is None else self._course(statement, via),
-                reconfiguration=posture,
+                course=None if via is None else self._course(statement, via, postures[0]),
+                reconfiguration=postures[1],
                 criteria=criteria,
             )
 
-    def _postures(self, statement: tree.Move, moves: int) -> list[JointTarget | None]:
-        """Posture of WITH RECONFIGURATION for each of the moves that a MOVE makes."""
+    def _postures(
+        self, statement: tree.Move, moves: int
+    ) -> list[tuple[JointTarget | None, JointTarget | None]]:
+        """Postures of WITH RECONFIGURATION, at the via point and at the end of each move of a MOVE.
+
+        A CIRCLE has one for each target, or one for each end point.
+        """
         for clause in statement.clauses:
             if isinstance(clause, tree.WithReconfiguration):
-                return [self._posture(expression) for expression in clause.targets]
-        return [None] * moves
+                postures = [self._posture(expression) for expression in clause.targets]
+                if len(postures) == moves:
+                    return [(None, posture) for posture in postures]
+                return list(zip(postures[::2], postures[1::2], strict=True))
+        return [(None, None)] * moves
 
     def _posture(self, expression: tree.Expression) -> JointTarget:
         main, joint = self._scope.types["main_joint"], self._scope.types["joint"]
@@ -239,8 +253,8 @@ class _Interpreter:
         target, law = self._posture(statement.target), self._law(statement)
         return ReconfigureBlock(id=self._next_id(), origin=self._origin(statement), target=target, law=law)
 
-    def _course(self, statement: tree.Move, via: tree.Expression) -> ArcCourse:
-        """Via point of a CIRCLE with what ANGLE and CIRC_ORI say."""
+    def _course(self, statement: tree.Move, via: tree.Expression, posture: JointTarget | None) -> ArcCourse:
+        """Via point of a CIRCLE, its posture where it has one, with what ANGLE and CIRC_ORI say."""
         given = {param.name.key: param.value for param in statement.params}
         angle, turning = None, "END"
         if "angle" in given:
@@ -253,7 +267,7 @@ class _Interpreter:
             if turning.upper() not in ("VIA", "END"):
                 data = {"param": "CIRC_ORI", "expected": "'VIA' or 'END'", "value": f"'{turning}'"}
                 raise fail("IRL505", self._source, given["circ_ori"].span, **data)
-        return ArcCourse(self._target(via), angle, turning.upper() == "VIA")
+        return ArcCourse(self._target(via), angle, turning.upper() == "VIA", posture)
 
     def _target(self, expression: tree.Expression) -> PoseTarget | JointTarget:
         main, joint = self._scope.types["main_joint"], self._scope.types["joint"]

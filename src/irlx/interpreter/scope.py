@@ -20,8 +20,10 @@ class Variable:
 
 @dataclass
 class Scope:
-    """Names of one program by casefolded spelling; `announced` are those it declares anywhere."""
+    """Names of one program by casefolded spelling; `announced` are those it declares anywhere, `imported`
+    those of its data lists."""
 
     variables: dict[str, Variable] = field(default_factory=dict)
     types: dict[str, Type] = field(default_factory=dict)
     announced: frozenset[str] = frozenset()
+    imported: frozenset[str] = frozenset()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from irlx.blocks.criterion import LIBRARY
 from irlx.diagnostics import Diagnostic, Place, SourceText, report
@@ -13,6 +13,7 @@ from irlx.interpreter.parameters import criterion_name
 from irlx.interpreter.setting import SYSTEM_REALS
 from irlx.interpreter.system_names import LATER_TYPES, system_name
 from irlx.language import builtins, tree
+from irlx.language.data_lists import ImportedList
 from irlx.language.symbols import declared_symbols
 
 _DECLARATIONS = (
@@ -20,6 +21,7 @@ _DECLARATIONS = (
     tree.ConstDeclaration,
     tree.TypeDefinition,
     tree.SystemSpecification,
+    tree.ImportDatalist,
 )
 _STATEMENTS = (
     tree.Assignment,
@@ -55,7 +57,6 @@ MOVE_PARAMS = {
 
 _NAMES = {
     "ImportFrom": "FROM .. IMPORT",
-    "ImportDatalist": "IMPORT DATALIST",
     "Export": "EXPORT",
     "RobotBinding": "ROBOT",
     "StandardChannel": "STANDARD_IN and STANDARD_OUT",
@@ -100,18 +101,18 @@ def missing_in_move(move: tree.Move) -> tuple[tree.Node, str] | None:
     for clause in move.clauses:
         if not isinstance(clause, _CLAUSES):
             return clause, part_name(clause)
-        postures = clause.targets if isinstance(clause, tree.WithReconfiguration) else ()
-        if move.kind == "CIRCLE" and len(postures) == len(move.targets):
-            return postures[0], "a posture for the via point"
     return None
 
 
-def unsupported(program: tree.Program, source: SourceText) -> list[Diagnostic]:
-    """A warning, IRL591, for every part of a program that a run would stop at.
+def unsupported(
+    program: tree.Program, source: SourceText, lists: Sequence[ImportedList] = ()
+) -> list[Diagnostic]:
+    """A warning, IRL591, for every part of a program and its data lists that a run would stop at.
 
     IRL363 for criteria outside the library, at which it stops unless they are registered by then.
     """
-    declared = frozenset(symbol.name.key for symbol in declared_symbols(program.declarations))
+    values = [part for data_list in lists for part in data_list.tree.declarations]
+    declared = frozenset(symbol.name.key for symbol in declared_symbols([*program.declarations, *values]))
     found: list[tuple[tree.Node, str]] = []
     for declaration in program.declarations:
         if isinstance(declaration, _DECLARATIONS):
@@ -126,8 +127,15 @@ def unsupported(program: tree.Program, source: SourceText) -> list[Diagnostic]:
         if missing is not None:
             found.append(missing)
         found += _parts(statement, declared)
-    warnings = [report("IRL591", Place.in_text(source, node.span), what=what) for node, what in found]
+    warnings = [_unexecuted(source, node, what) for node, what in found]
+    for data_list in lists:
+        for part in data_list.tree.declarations:
+            warnings += [_unexecuted(data_list.source, *missing) for missing in _parts(part, declared)]
     return [*warnings, *_unknown_criteria(program, source)]
+
+
+def _unexecuted(source: SourceText, node: tree.Node, what: str) -> Diagnostic:
+    return report("IRL591", Place.in_text(source, node.span), what=what)
 
 
 def _unknown_criteria(program: tree.Program, source: SourceText) -> Iterator[Diagnostic]:

@@ -11,6 +11,7 @@ from irlx.diagnostics import Diagnostic, Place, SourceText, Span, report
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.language import tree
 from irlx.language.criteria import check_criterion
+from irlx.language.data_lists import DataListResolver, ImportedList, imports_of, in_order
 from irlx.language.moves import check_move
 from irlx.language.names import check_names
 from irlx.language.parser import parse
@@ -18,7 +19,9 @@ from irlx.language.scope import Scope
 from irlx.language.switches import check_freeze, check_switches
 from irlx.language.symbols import Symbol
 
-__all__ = ["Analysis", "CellNames", "Resolver", "analyse"]
+__all__ = ["Analysis", "CellNames", "DataListResolver", "Resolver", "analyse"]
+
+_Root: TypeAlias = "tree.Program | tree.Module | tree.DataList"
 
 Resolver: TypeAlias = "Callable[[str], Analysis | None]"
 """Gives the analysis of a module by the name that FROM uses, or None where there is no such module."""
@@ -33,14 +36,16 @@ class Analysis:
 
     `tree` is partial after a mistake and None where nothing is left; `symbols` are the program's own
     declarations by casefolded name, `types` the types among them; `comments` are in the order of the text.
+    `data_lists` are those that it imports, in order, as far as they could be read.
     """
 
     source: SourceText
-    tree: tree.Program | tree.Module | None
+    tree: tree.Program | tree.Module | tree.DataList | None
     diagnostics: tuple[Diagnostic, ...]
     comments: tuple[Span, ...]
     symbols: Mapping[str, Symbol] = field(default_factory=dict)
     types: Mapping[str, Symbol] = field(default_factory=dict)
+    data_lists: tuple[ImportedList, ...] = ()
 
     @property
     def has_errors(self) -> bool:
@@ -49,18 +54,23 @@ class Analysis:
 
 
 def analyse(
-    source: SourceText, resolver: Resolver | None = None, cell_names: CellNames | None = None
+    source: SourceText,
+    resolver: Resolver | None = None,
+    cell_names: CellNames | None = None,
+    data_lists: DataListResolver | None = None,
 ) -> Analysis:
     """Parse and check a text; never raises for what a text may hold.
 
     Without a `resolver` imported names are taken as declared and modules are not looked at. What
     `cell_names` gives counts as constants of the program, which its own declarations may hide.
+    `data_lists` gives the texts of data lists; without it, one that is imported may hold any name.
     """
     parsed = parse(source)
     if parsed.tree is None:
-        return Analysis(source, None, _in_order(parsed.findings), parsed.comments)
+        return Analysis(source, None, in_order(parsed.findings, source, ()), parsed.comments)
     given = cell_names(parsed.tree) if cell_names and isinstance(parsed.tree, tree.Program) else ()
-    scope, findings = check_names(parsed.tree, source, given, complete=parsed.complete)
+    imports = imports_of(parsed.tree, source, data_lists)
+    scope, findings = check_names(parsed.tree, source, given, imports, complete=parsed.complete)
     findings += _static_findings(parsed.tree, source)
     if resolver is not None:
         findings += _import_findings(parsed.tree, scope, resolver)
@@ -69,15 +79,12 @@ def analyse(
     return Analysis(
         source,
         parsed.tree,
-        _in_order((*parsed.findings, *findings)),
+        in_order((*parsed.findings, *imports.findings, *findings), source, imports.lists),
         parsed.comments,
         MappingProxyType(scope.values),
         MappingProxyType(scope.types),
+        imports.lists,
     )
-
-
-def _in_order(findings: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
-    return tuple(sorted(findings, key=lambda d: d.place.span.start if d.place and d.place.span else 0))
 
 
 def _static_findings(root: tree.Node, source: SourceText) -> list[Diagnostic]:
@@ -92,7 +99,7 @@ def _static_findings(root: tree.Node, source: SourceText) -> list[Diagnostic]:
     return findings
 
 
-def _import_findings(root: tree.Program | tree.Module, scope: Scope, resolver: Resolver) -> list[Diagnostic]:
+def _import_findings(root: _Root, scope: Scope, resolver: Resolver) -> list[Diagnostic]:
     findings = []
     for declaration in root.declarations:
         if not isinstance(declaration, tree.ImportFrom) or not declaration.module.key:

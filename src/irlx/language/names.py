@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
+from dataclasses import replace
 from typing import Any
 
 from irlx.diagnostics import Diagnostic, Place, SourceText, Span, report
@@ -16,27 +17,41 @@ from irlx.language.builtins import (
     TYPES,
     is_port_name,
 )
+from irlx.language.data_lists import ImportedList, Imports, check_values
 from irlx.language.labels import check_jumps
 from irlx.language.scope import Scope
 from irlx.language.symbols import Routine, Symbol, declared_symbols, parameter_symbols
 
 __all__ = ["NamePass", "check_names"]
 
+_NO_IMPORTS = Imports()
 _READ_ONLY = {"constant": "a constant", "input": "an input"}
 _NOT_SET = {"procedure": "a procedure", "function": "a function", "robot": "a robot"}
 
 
 def check_names(
-    root: tree.Program | tree.Module, source: SourceText, given: Collection[str] = (), *, complete: bool
+    root: tree.Program | tree.Module | tree.DataList,
+    source: SourceText,
+    given: Collection[str] = (),
+    imports: Imports = _NO_IMPORTS,
+    *,
+    complete: bool,
 ) -> tuple[Scope, list[Diagnostic]]:
-    """Scope of a program or module and the findings on its names; `given` are constants of its cell.
+    """Scope of a text and the findings on its names and on those of the data lists that it imports.
 
-    Without `complete`, unknown names prove nothing, because their declarations may have been dropped.
+    `given` are constants of its cell. Without `complete`, unknown names prove nothing, because their
+    declarations may have been dropped.
     """
-    datalist = any(isinstance(d, tree.ImportDatalist) for d in root.declarations)
-    scope = Scope(source, given=given, open=datalist or not complete)
+    scope = Scope(source, given=given, open=not (imports.whole and complete))
     names = NamePass(scope, complete=complete)
+    if isinstance(root, tree.DataList):
+        names.imported(ImportedList(source, root))
+        return scope, names.findings + check_values(ImportedList(source, root), scope, alone=True)
+    for data_list in imports.lists:
+        names.imported(data_list)
     names.declarations(root.declarations)
+    for data_list in imports.lists:
+        names.findings += check_values(data_list, scope, alone=False)
     if isinstance(root, tree.Program):
         names.body(root.body)
     return scope, names.findings
@@ -62,6 +77,11 @@ class NamePass:
             else:
                 self._uses(declaration)
 
+    def imported(self, data_list: ImportedList) -> None:
+        """Declare the names of a data list: variables of the program."""
+        symbols = declared_symbols(data_list.tree.declarations)
+        self._declare(replace(symbol, source=data_list.source) for symbol in symbols)
+
     def body(self, body: Sequence[tree.Statement]) -> None:
         """Look at the names that statements use."""
         self._uses(*body)
@@ -72,7 +92,7 @@ class NamePass:
         usable = []
         for symbol in symbols:
             if symbol.name.key in SYSTEM_VARIABLES and symbol.kind != "type":
-                self._add("IRL216", symbol.name.span, name=symbol.name.name)
+                self.findings.append(report("IRL216", self.scope.place(symbol), name=symbol.name.name))
             else:
                 usable.append(symbol)
         self.findings += self.scope.declare(usable)

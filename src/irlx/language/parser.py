@@ -14,7 +14,7 @@ from irlx.language.parsing.driver import Driver, ParseStopped
 from irlx.language.parsing.machine import END
 from irlx.language.parsing.nesting import too_deep
 from irlx.language.parsing.recovery import close_all, missing_semicolon, recover
-from irlx.language.tree import Module, Program
+from irlx.language.tree import DataList, Module, Program
 
 __all__ = ["Parse", "parse"]
 
@@ -26,7 +26,7 @@ class Parse:
     `complete` is False where recovery left text out, so that what is missing proves nothing.
     """
 
-    tree: Program | Module | None
+    tree: Program | Module | DataList | None
     findings: tuple[Diagnostic, ...]
     comments: tuple[Span, ...]
     complete: bool

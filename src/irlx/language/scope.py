@@ -14,8 +14,8 @@ __all__ = ["Scope"]
 class Scope:
     """Names of a program or routine; types have a space of their own, `POSE: pose` is no clash.
 
-    `open` scopes hold names that the text does not show, those of a data list; `given` are names that
-    the cell adds, hidden by what the text declares.
+    `open` scopes hold names that the text does not show, those of a data list that is not known; `given`
+    are names that the cell adds, hidden by what the text declares.
     """
 
     def __init__(
@@ -51,9 +51,12 @@ class Scope:
         return findings
 
     def _clash(self, code: str, symbol: Symbol, other: Symbol, words: str) -> Diagnostic:
-        related = Related(words, Place.in_text(self.source, other.name.span))
-        place = Place.in_text(self.source, symbol.name.span)
-        return report(code, place, related=(related,), name=symbol.name.name)
+        related = Related(words, self.place(other))
+        return report(code, self.place(symbol), related=(related,), name=symbol.name.name)
+
+    def place(self, symbol: Symbol) -> Place:
+        """Where a symbol is declared."""
+        return Place.in_text(symbol.source or self.source, symbol.name.span)
 
     def value(self, key: str) -> Symbol | None:
         """The innermost symbol of that name that is no type."""

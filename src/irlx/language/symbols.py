@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+from irlx.diagnostics import SourceText
 from irlx.language import tree
 
 __all__ = ["Routine", "Symbol", "SymbolKind", "declared_symbols", "label_names", "parameter_symbols"]
@@ -27,11 +28,15 @@ Routine: TypeAlias = "tree.ProcedureDeclaration | tree.FunctionDeclaration"
 
 @dataclass(frozen=True, slots=True)
 class Symbol:
-    """A declared name: how it is spelt where declared, what it is, and the node that declares it."""
+    """A declared name: how it is spelt where declared, what it is, and the node that declares it.
+
+    `source` is the text that declares it where that is not the program's own: a data list.
+    """
 
     name: tree.Name
     kind: SymbolKind
     declaration: tree.Node
+    source: SourceText | None = None
 
 
 def declared_symbols(declarations: Iterable[tree.Declaration]) -> Iterator[Symbol]:

@@ -14,6 +14,9 @@ from irlx.motion.turn import Turning
 
 Array = NDArray[np.float64]
 
+NEAREST_POINTS = 1e-6
+"""Points of a circle nearer to each other, or to a line, than this (m) do not define it."""
+
 _WHOLE_TURNS = 1e-15
 """Angles this near to whole turns, relative, are whole turns: what radians() leaves of degrees."""
 
@@ -68,6 +71,15 @@ class Circle:
         """The same circle run through the other way."""
         via, end = tau - self.via_angle, tau - self.end_angle
         return replace(self, tangent=-self.tangent, via_angle=via, end_angle=end)
+
+    def share_at_via(self, travel: float) -> float | None:
+        """Share of a travel, rad, at which the via point is passed for the first time, inside 0..1.
+
+        None where the travel does not come to it, or ends there.
+        """
+        if self.radius * (travel - self.via_angle) < NEAREST_POINTS:
+            return None
+        return self.via_angle / travel
 
     def points(self, angles: Array) -> Array:
         """Points (N, 3), m, at the angles (N,), rad, from the start.
@@ -132,6 +144,11 @@ class Arc(SweptPath):
     def turning(self) -> Turning:
         """How the orientation changes on the way."""
         return self.orientation
+
+    @property
+    def share_at_via(self) -> float | None:
+        """Share of the way at which the via point is passed for the first time; see `Circle.share_at_via`."""
+        return self.circle.share_at_via(self.travel)
 
     @property
     def translation(self) -> float:

@@ -7,15 +7,12 @@ from numpy.typing import NDArray
 
 from irlx.blocks import ArcCourse, MoveBlock
 from irlx.diagnostics import Place, report
-from irlx.motion.arc import Arc, Circle, spread
+from irlx.motion.arc import NEAREST_POINTS, Arc, Circle, spread
 from irlx.motion.errors import MotionError
 from irlx.motion.target_pose import target_pose
 from irlx.motion.turn import Turn, Turning, TurnsThroughVia
 
 Array = NDArray[np.float64]
-
-NEAREST_POINTS = 1e-6
-"""Points of a circle nearer to each other, or to a line, than this (m) do not define it."""
 
 
 def circle_path(block: MoveBlock, start_rotation: Array, start_position: Array, place: Place) -> Arc:
@@ -62,11 +59,12 @@ def _check_points(start: Array, via: Array, end: Array, place: Place) -> None:
 
 def _via_share(circle: Circle, travel: float, course: ArcCourse, place: Place) -> float:
     """Share of the travel at which the via point is passed for the first time."""
-    if circle.radius * (travel - circle.via_angle) < NEAREST_POINTS:
+    share = circle.share_at_via(travel)
+    if share is None:
         way = np.degrees(circle.via_angle)
         angle = np.degrees(course.angle if course.angle is not None else travel)
         raise MotionError(report("IRL429", place, angle=f"{angle:.6g}", via=f"{way:.6g}"))
-    return circle.via_angle / travel
+    return share
 
 
 def _millimetres(metres: float) -> str:

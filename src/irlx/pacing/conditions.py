@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from irlx.blocks import PoseTarget
+from irlx.blocks import MoveBlock, PoseTarget
 from irlx.diagnostics import Place, report
 from irlx.pacing.errors import PacingError
 from irlx.promises import CONDITION, PATH_ORIENTATION, PATH_POSITION
@@ -15,6 +15,13 @@ from irlx.robot.kinematics import Kinematics
 from irlx.robot.task import partial_difference
 
 Array = NDArray[np.float64]
+
+
+def check_targets(block: MoveBlock, kinematics: Kinematics, q: Array, place: Place) -> None:
+    """`check_can_move` for target and via point of a LIN or CIRCLE."""
+    for target in (block.target, None if block.course is None else block.course.via):
+        if isinstance(target, PoseTarget):
+            check_can_move(target, kinematics, q, place)
 
 
 def check_can_move(target: PoseTarget, kinematics: Kinematics, q: Array, place: Place) -> None:

@@ -25,11 +25,12 @@ from irlx.blocks import (
     ReconfigureBlock,
 )
 from irlx.diagnostics import Diagnostic, Place, report
+from irlx.motion.arc import Arc
 from irlx.motion.plan_joint_line import plan_joint_line
 from irlx.motion.plan_path import PlannedPath, plan_path
 from irlx.motion.whole_ticks import ticks_of_move
 from irlx.pacing.clock import programmed_clock
-from irlx.pacing.conditions import broken_condition, check_can_move, check_conditions
+from irlx.pacing.conditions import broken_condition, check_can_move, check_conditions, check_targets
 from irlx.pacing.demand import Demand, DemandModifier
 from irlx.pacing.errors import PacingError
 from irlx.pacing.impossible import (
@@ -42,6 +43,7 @@ from irlx.pacing.impossible import (
 )
 from irlx.pacing.options import LimitsInForce, Options, SwitchBlock, limits_in_force
 from irlx.pacing.path_motion import Failure, PacedPath, PathMotion, pace_path
+from irlx.pacing.posed import posed
 from irlx.pacing.posture_left import (
     JOINTS_GIVEN,
     NO_WAY,
@@ -51,7 +53,7 @@ from irlx.pacing.posture_left import (
     posture_left,
     why_left,
 )
-from irlx.pacing.posture_term import PostureTerm, posture_term
+from irlx.pacing.posture_term import Asked, PostureTerm, posture_term
 from irlx.pacing.reconfigure import reconfigured, settled_konf
 from irlx.pacing.row_check import broken_bound
 from irlx.pacing.rows import MotionRows, PathPart
@@ -190,14 +192,18 @@ class Pacer:
     def _line(self, block: MoveBlock, in_force: LimitsInForce) -> MotionRows | None:
         place = self._locate(block.origin)
         rotation, position = self._setup.kinematics.tool_pose(self.q)
-        posture, posed = self._line_targets(block, in_force, place)
-        plan = plan_path(posed, rotation, position, self._setup.dt, place)
+        posture = self._asked_posture(block, in_force, place)
+        asked = posed(block, self._setup.kinematics)
+        check_targets(asked, self._setup.kinematics, self.q, place)
+        plan = plan_path(asked, rotation, position, self._setup.dt, place)
         if plan.ticks == 0:
             self._warn_of_posture_left(self.q, posture, block, place)
             return None
         free = self.options.free_joints(self.q.size)
         model = Model(self._setup.kinematics, in_force.limits, self._setup.weights, free)
-        term = posture_term(model, self.q, plan.programmed, posture, self.options.cyclic_posture, self._qp)
+        via = self._posture_at_via(block, plan, in_force, place)
+        asked = None if posture is None else Asked(posture, via)
+        term = posture_term(model, self.q, plan.programmed, asked, self.options.cyclic_posture, self._qp)
         term = term.with_terms(self._added_terms(block, plan, in_force.limits), plan.programmed)
         dt, longest = self._setup.dt, self._setup.max_slow * plan.programmed.duration
 
@@ -228,37 +234,29 @@ class Pacer:
         setting = TermSetting(kinematics, limits, self._setup.weights, self.q, tool_speed)
         return added_terms(chosen, setting, self._locate)
 
-    def _line_targets(
-        self, block: MoveBlock, in_force: LimitsInForce, place: Place
-    ) -> tuple[Array | None, MoveBlock]:
-        """The posture to end in where the target is one, and the block with poses for all its postures.
+    def _asked_posture(self, block: MoveBlock, in_force: LimitsInForce, place: Place) -> Array | None:
+        """The posture (n,) that a move is to end in: that of RECONFIGURATION, else its target if it is one.
 
         A CIRCLE with ANGLE does not end at its target: it is not drawn to the target's posture.
         """
-        course, posture = block.course, None
-        if isinstance(block.target, JointTarget) and (course is None or course.angle is None):
+        posture = None
+        if isinstance(block.target, JointTarget) and (block.course is None or block.course.angle is None):
             posture = np.array(block.target.values)
             check_joint_target(posture, self._robot, in_force.limits, place)
-        if course is not None:
-            course = replace(course, via=self._as_pose(course.via))
         if block.reconfiguration is not None:
             posture = self._konf(block.reconfiguration, in_force, place)
-        posed = replace(block, target=self._as_pose(block.target), course=course)
-        for target in (posed.target, course.via if course is not None else None):
-            if isinstance(target, PoseTarget):
-                check_can_move(target, self._setup.kinematics, self.q, place)
-        return posture, posed
+        return posture
 
-    def _as_pose(self, target: PoseTarget | JointTarget) -> PoseTarget:
-        """A target as the pose of the tool."""
-        if isinstance(target, PoseTarget):
-            return target
-        rotation, position = self._setup.kinematics.tool_pose(np.array(target.values))
-        x, y, z, w = Rotation.from_matrix(rotation).as_quat()
-        return PoseTarget(
-            (float(position[0]), float(position[1]), float(position[2])),
-            (float(x), float(y), float(z), float(w)),
-        )
+    def _posture_at_via(
+        self, block: MoveBlock, plan: PlannedPath, in_force: LimitsInForce, place: Place
+    ) -> tuple[float, Array] | None:
+        """Share of the way at the via point of a CIRCLE, and the posture to be drawn to there.
+
+        None where none is asked for, or a travel by ANGLE does not come to the via point.
+        """
+        asked = None if block.course is None else block.course.via_reconfiguration
+        share = plan.path.share_at_via if isinstance(plan.path, Arc) else None
+        return None if asked is None or share is None else (share, self._konf(asked, in_force, place))
 
     def _warn_of_posture_left(self, q: Array, posture: Array | None, block: MoveBlock, place: Place) -> None:
         if posture is None:

@@ -129,6 +129,7 @@ def _task(motion: PathMotion) -> MotionTask:
         motion.term.at,
         Ticking(motion.dt, motion.ticks_of, motion.demands_of),
         motion.term.draws,
+        motion.term.through,
     )
 
 

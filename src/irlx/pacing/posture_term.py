@@ -4,10 +4,11 @@ CRITERION adds to it."""
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
 
 from irlx.motion.trapezoid import Trapezoid
 from irlx.pacing.governed_return import governed_reference, way_to_best
@@ -26,35 +27,60 @@ class PostureTerm:
     """Criterion of a move: `at(s, advance)` of a tick that ends at path parameter s, `advance` behind the one
     before.
 
-    `draws` tells that it draws the joints to a posture.
+    `draws` tells that it draws the joints to a posture, and `through` at which path parameter on the way
+    another one is asked for, None for nowhere.
     """
 
     at: Callable[[float, float], Criterion]
     draws: bool
+    through: float | None = None
 
     def with_terms(self, terms: tuple[Weighted, ...], law: Trapezoid) -> PostureTerm:
         """The same with added terms, which act by the time that the way takes at the law's cruising speed."""
         if not terms:
             return self
         base = self.at
-        return PostureTerm(
-            lambda s, advance: Combined(base(s, advance), terms, advance / law.speed), self.draws
-        )
+        return replace(self, at=lambda s, advance: Combined(base(s, advance), terms, advance / law.speed))
+
+
+@dataclass(frozen=True)
+class Asked:
+    """Postures that a move is drawn to: `end` (n,), to be reached with its target.
+
+    `via`, where there is one, is a share of the way, inside 0..1, and the posture (n,) to be reached there.
+    """
+
+    end: Array
+    via: tuple[float, Array] | None = None
+
+    def reference(self, start: Array) -> Callable[[float], Array]:
+        """Posture (n,) at a share of the way, from `start` (n,) to the end.
+
+        In step with the share, or through `via` without a jump of its rate and, of every joint, without a
+        value beyond the two postures that it is between: a cubic between each two, by Fritsch and Butland.
+        """
+        if self.via is None:
+            way = self.end - start
+            return lambda share: np.asarray(start + share * way)
+        share_at_via, via = self.via
+        curve = PchipInterpolator([0.0, share_at_via, 1.0], np.array([start, via, self.end]))
+        return lambda share: np.asarray(curve(share))
 
 
 def posture_term(
-    model: Model, start: Array, law: Trapezoid, asked: Array | None, cyclic: Array | None, qp: QpSolver
+    model: Model, start: Array, law: Trapezoid, asked: Asked | None, cyclic: Array | None, qp: QpSolver
 ) -> PostureTerm:
     """Posture term of a move that starts at posture `start` (n,) and follows `law`.
 
-    `asked` (n,) is the posture the move is to end in: its reference runs there from the start in step
-    with the path parameter, so that both ends are reached together. Else `cyclic` (n,), the posture of
+    `asked` are the postures that it is drawn to, by a reference that runs with the path parameter, so that
+    they are reached together with their places on the path. Else `cyclic` (n,), the posture of
     CYCLICSTART, draws every row, governed while the robot stands away from the best one for it.
     """
     weights = model.weights
     if asked is not None:
-        way = asked - start
-        return PostureTerm(lambda s, _: Posture(weights, start + (s / law.length) * way), True)
+        on_the_way = asked.reference(start)
+        through = None if asked.via is None else asked.via[0] * law.length
+        return PostureTerm(lambda s, _: Posture(weights, on_the_way(s / law.length)), True, through)
     if cyclic is not None:
         away = way_to_best(model, start, cyclic, qp)
         reference = governed_reference(cyclic, away, law, model.limits)

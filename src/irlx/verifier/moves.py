@@ -135,6 +135,8 @@ def _wrong_targets(block: MoveBlock, joints: int) -> str:
         return f"a {block.kind.value} {'needs a' if course is None else 'has no'} course"
     if course is not None and course.angle is not None and not 0.0 < abs(course.angle) < np.inf:
         return f"it cannot turn by {course.angle} rad"
+    if course is not None and course.via_reconfiguration is not None and block.reconfiguration is None:
+        return "it has a posture for its via point and none for its end"
     for target in (block.target,) if course is None else (course.via, block.target):
         if isinstance(target, JointTarget) and len(target.values) != joints:
             return f"its target has {len(target.values)} values for {joints} joints"
@@ -146,8 +148,10 @@ def _wrong_targets(block: MoveBlock, joints: int) -> str:
 
 
 def _postures_beside(block: Block) -> list[JointTarget]:
-    """Postures of a block other than the target of a move."""
+    """Postures of a block other than the targets of a move."""
     if isinstance(block, ReconfigureBlock):
         return [block.target]
-    beside = block.reconfiguration if isinstance(block, MoveBlock) else None
-    return [] if beside is None else [beside]
+    if not isinstance(block, MoveBlock):
+        return []
+    via = None if block.course is None else block.course.via_reconfiguration
+    return [posture for posture in (via, block.reconfiguration) if posture is not None]

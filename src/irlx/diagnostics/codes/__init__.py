@@ -8,6 +8,7 @@ from types import MappingProxyType
 from irlx.diagnostics.codes.cell import CELL
 from irlx.diagnostics.codes.code import Code, Severity
 from irlx.diagnostics.codes.command import COMMAND
+from irlx.diagnostics.codes.data_lists import DATA_LISTS
 from irlx.diagnostics.codes.motion import MOTION
 from irlx.diagnostics.codes.names import NAMES
 from irlx.diagnostics.codes.pacing import PACING
@@ -20,7 +21,19 @@ from irlx.diagnostics.codes.types import TYPES
 CATALOGUE: Mapping[str, Code] = MappingProxyType(
     {
         code.id: code
-        for group in (COMMAND, SYNTAX, NAMES, TYPES, REDUNDANCY, MOTION, PACING, RUN, CELL, STREAM)
+        for group in (
+            COMMAND,
+            SYNTAX,
+            NAMES,
+            TYPES,
+            DATA_LISTS,
+            REDUNDANCY,
+            MOTION,
+            PACING,
+            RUN,
+            CELL,
+            STREAM,
+        )
         for code in group
     }
 )

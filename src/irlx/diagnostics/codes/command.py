@@ -10,7 +10,7 @@ COMMAND = (
     error("IRL005", "-o {path} would overwrite an input of this run", "name another file"),
     error("IRL006", "{option} {value}: {cause}"),
     error("IRL007", "{path} is a folder, not a file"),
-    error("IRL008", "{name} is a MODULE, which does not run by itself", "run a PROGRAM that imports from it"),
+    error("IRL008", "{name} is a {kind}, which does not run by itself", "run a PROGRAM that imports from it"),
     error(
         "IRL009",
         "the plugin {name} cannot be imported: {cause}",

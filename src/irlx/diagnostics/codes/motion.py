@@ -10,7 +10,7 @@ MOTION: tuple[Code, ...] = (
     error(
         "IRL405",
         "{targets} target(s), but {postures} posture(s) after RECONFIGURATION",
-        "give one posture for each target",
+        "give one posture for each target, of a CIRCLE for each via and end point or for each end point",
     ),
     error("IRL406", "WITH {clause} is given twice"),
     warning(

@@ -25,6 +25,10 @@ class PartBuilder:
         """Reduce a whole module."""
         return tree.Module(span_of(children), children[1], children[3])
 
+    def datalist(self, children: Children) -> tree.DataList:
+        """Reduce a whole data list."""
+        return tree.DataList(span_of(children), children[1], nodes_of(children[3:]))
+
     def declarations(self, children: Children) -> tuple[tree.Declaration, ...]:
         """Reduce the declarations of a program or module."""
         return nodes_of(children)

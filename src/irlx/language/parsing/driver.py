@@ -82,7 +82,8 @@ class Driver:
             self._checkpoint = self.machine.snapshot(without_last=1)
             self._checkpoint_blocks = tuple(self.blocks)
             self.statement_index = self.index
-            self.head = token.type
+            # As a name, DATALIST begins a statement like any other name.
+            self.head = "NAME" if token.type == "DATALIST" and not self._opens_list(token) else token.type
             self.at_boundary = False
         if token.type in _TRACKED:
             self._track(token)
@@ -102,11 +103,21 @@ class Driver:
             self.depth -= 1
         elif kind in _CLOSING and self.blocks:
             self.blocks.pop()
-        if kind in CLOSERS and not (kind == "FOR" and self.head == "WAIT"):
+        if kind in CLOSERS and self._opens(token):
             self.blocks.append(token)
             if len(self.blocks) > MAX_BLOCKS:
                 self.report("IRL118", token_span(token), limit=MAX_BLOCKS, what="statements")
                 raise ParseStopped
+
+    def _opens(self, token: Token) -> bool:
+        """Whether a word with a closer opens a block where it stands."""
+        if token.type == "DATALIST":
+            return self._opens_list(token)
+        return not (token.type == "FOR" and self.head == "WAIT")
+
+    def _opens_list(self, token: Token) -> bool:
+        """Whether DATALIST begins the file; elsewhere it is a name, or stands in an IMPORT."""
+        return not self.blocks and self.tokens[0].type == "DATALIST"
 
     def take(self, token: Token) -> None:
         """Feed a token in place of the next one; ParseStopped where it does not fit."""

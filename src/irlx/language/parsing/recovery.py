@@ -220,7 +220,8 @@ def _keyword_as_name(driver: Driver) -> bool:
 def _text_after_end(driver: Driver) -> bool:
     if not driver.machine.accepts(END):
         return False
-    driver.report("IRL109", token_span(driver.token), found=found_words(driver.token))
+    what = {"MODULE": "module", "DATALIST": "data list"}.get(driver.tokens[0].type, "program")
+    driver.report("IRL109", token_span(driver.token), what=what, found=found_words(driver.token))
     raise ParseStopped
 
 

@@ -109,6 +109,8 @@ def construct(tokens: Sequence[Token]) -> str:
     if not tokens:
         return "the statement"
     first = tokens[0]
+    if first.type == "DATALIST" and len(tokens) > 1 and tokens[1].type in NAMES_TOO | {"NAME"}:
+        return "the DATALIST"
     if first.type == "NAME" or first.type in NAMES_TOO:
         kinds = {token.type for token in tokens}
         if "ASSIGN" in kinds and "COLON" not in kinds:

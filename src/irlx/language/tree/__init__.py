@@ -3,6 +3,7 @@
 from irlx.language.tree.declarations import (
     ArrayType,
     ConstDeclaration,
+    DataList,
     Declaration,
     Export,
     FieldGroup,
@@ -107,6 +108,7 @@ __all__ = [
     "CriterionStart",
     "CyclicEnd",
     "CyclicStart",
+    "DataList",
     "Declaration",
     "Designator",
     "Exit",

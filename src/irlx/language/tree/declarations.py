@@ -191,3 +191,11 @@ class Module(Node):
 
     name: Name
     declarations: tuple[Declaration, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class DataList(Node):
+    """A data list: named values, such as taught points, that are variables of the programs that import it."""
+
+    name: Name
+    declarations: tuple[VarDeclaration, ...]

@@ -50,6 +50,10 @@ class PathGrid:
         """Number N of intervals."""
         return int(self.times.size)
 
+    def inner_knot(self, s: float) -> int:
+        """The knot next to a path parameter, the first and the last one left out."""
+        return int(np.clip(np.argmin(np.abs(self.s - s)), 1, self.intervals - 1))
+
 
 def path_grid(path: PosePath, law: Trapezoid) -> PathGrid:
     """Knots of a path that is programmed to be run by `law`.

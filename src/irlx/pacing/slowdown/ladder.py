@@ -38,11 +38,17 @@ class TimedCurve:
 
 
 def timed_curves(
-    model: Model, grid: PathGrid, walked: Array, bounds: tuple[Array, Array], acc: float
+    model: Model,
+    grid: PathGrid,
+    walked: Array,
+    bounds: tuple[Array, Array],
+    acc: float,
+    pinned: int | None = None,
 ) -> list[TimedCurve]:
     """The rungs for the walked postures (N + 1, n), fastest first; none that leaves the position limits.
 
-    `bounds` are lower and upper positions (N + 1, n), `acc` the largest |d2s/dt2|.
+    `bounds` are lower and upper positions (N + 1, n), `acc` the largest |d2s/dt2|; the posture of the knot
+    `pinned` stays.
     """
     programmed = float(np.sum(grid.times))
     known = np.isfinite(model.limits.acceleration_upper) | np.isfinite(model.limits.acceleration_lower)
@@ -50,7 +56,7 @@ def timed_curves(
     found: list[tuple[float, TimedCurve]] = []
     for rung in RUNGS if tamed else (*RUNGS[1:], RUNGS[0]):
         handicap = 1.0 + ROUGH_GAIN if rung is None and not tamed else 1.0
-        timed = _timed(model, grid, walked, bounds, acc, rung)
+        timed = _timed(model, grid, walked, bounds, acc, rung, pinned)
         if timed is not None:
             found.append((timed.clock.duration * handicap, timed))
             if timed.clock.duration <= programmed * (1.0 + GOOD_ENOUGH):
@@ -65,10 +71,11 @@ def _timed(
     bounds: tuple[Array, Array],
     acc: float,
     rung: Smoothing | None,
+    pinned: int | None,
 ) -> TimedCurve | None:
     """The curve of one rung with its clock; None where it leaves the position limits or gets lost."""
     try:
-        q = walked if rung is None else relax(model, grid, walked, bounds, rung)
+        q = walked if rung is None else relax(model, grid, walked, bounds, rung, pinned)
     except np.linalg.LinAlgError:
         return None
     if not np.all(np.isfinite(q)):

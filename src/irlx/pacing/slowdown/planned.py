@@ -86,7 +86,8 @@ class Ticking:
 class MotionTask:
     """A motion to plan from posture `start` (n,): its path, programmed law, criterion by path parameter.
 
-    `acc` is the largest |d2s/dt2|; `draws` tells that the criterion draws the joints to a posture.
+    `acc` is the largest |d2s/dt2|; `draws` tells that the criterion draws the joints to a posture, and
+    `through` at which path parameter on the way another one is asked for, None for nowhere.
     """
 
     path: PosePath
@@ -96,6 +97,7 @@ class MotionTask:
     criterion_of: Callable[[float, float], Criterion]
     ticking: Ticking
     draws: bool = False
+    through: float | None = None
 
 
 def plan_motion(model: Model, task: MotionTask) -> PlannedMotion | Refusal:
@@ -135,9 +137,11 @@ def _with_reserve(
         interval, solution = passage.stopped
         return Refusal(float(grid.s[interval + 1]), solution=solution)
     q = passage.q
+    # Knots are close: the one next to the place stands for it.
+    through = None if task.through is None else grid.inner_knot(task.through)
     if task.draws:
-        q = with_drawn_end(model, grid, q, bounds, task.criterion_of(float(grid.s[-1]), 0.0))
-    curves = timed_curves(model, grid, q, bounds, task.acc)
+        q = with_drawn_end(model, grid, q, bounds, task.criterion_of, through)
+    curves = timed_curves(model, grid, q, bounds, task.acc, through)
     if not curves:
         return _outside(model, grid, q)
     standing = _standing(model, curves[0], grid)

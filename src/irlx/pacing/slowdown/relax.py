@@ -7,7 +7,8 @@ does not depend on the slowing), minimise
     sum_i W |h^2 q''_i|^2 + (h / l)^4 W |q_i - q_walk,i|^2
         + mu W (|dq_i| - 0.995 v dT_i)_+^2 + 1e5 W (position excess)_+^2,     l = tau x programmed speed,
 
-by Newton's method on the active set of the hinges (a band matrix), then back onto the path.
+by Newton's method on the active set of the hinges (a band matrix), then back onto the path. A knot at which
+a posture is asked for is pinned: there the price of the second term is 1e5.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ Sides = NDArray[np.int8]
 
 _SPEED_SHARE = 0.995
 _POSITION_PRICE = 1e5
+_PIN_PRICE = 1e5
 _OUTER_ROUNDS = 4
 _ACTIVE_ROUNDS = 12
 _LONGEST_STEP = 0.2
@@ -42,9 +44,15 @@ class Smoothing:
 
 
 def relax(
-    model: Model, grid: PathGrid, walked: Array, bounds: tuple[Array, Array], smoothing: Smoothing
+    model: Model,
+    grid: PathGrid,
+    walked: Array,
+    bounds: tuple[Array, Array],
+    smoothing: Smoothing,
+    pinned: int | None = None,
 ) -> Array:
-    """Smoother postures (N + 1, n) on the same poses, from those of the walk; first and last stay.
+    """Smoother postures (N + 1, n) on the same poses, from those of the walk; first and last stay, and that
+    of the knot `pinned`.
 
     `bounds` are lower and upper positions (N + 1, n). Raises numpy.linalg.LinAlgError at singular knots.
     """
@@ -53,7 +61,8 @@ def relax(
     targets = model.targets(grid.poses)
     q, jacobians = walked, model.differences(walked, targets)[1]
     for _ in range(_OUTER_ROUNDS):
-        step = _Relaxation(model, grid, q, null_spaces(jacobians), walked, bounds, smoothing).step()
+        relaxation = _Relaxation(model, grid, q, null_spaces(jacobians), walked, bounds, smoothing, pinned)
+        step = relaxation.step()
         moved = q.copy()
         moved[1:-1, model.free] += step
         moved[1:-1] = np.clip(moved[1:-1], *(side[1:-1] for side in bounds))
@@ -79,6 +88,7 @@ class _Relaxation:
         walked: Array,
         bounds: tuple[Array, Array],
         smoothing: Smoothing,
+        pinned: int | None,
     ) -> None:
         free = model.free
         self._weights = model.weights[free]
@@ -91,7 +101,9 @@ class _Relaxation:
         self._slowest = _SPEED_SHARE * limits.speed_lower[free] * grid.times[:, None]
         self._mu = smoothing.mu * (grid.step / STEP) ** 2
         self._second = _second_differences(np.diff(grid.s))
-        self._attraction = (grid.step / smoothing.tau) ** 4
+        self._attraction = np.full(len(q), (grid.step / smoothing.tau) ** 4)
+        if pinned is not None:
+            self._attraction[pinned] = _PIN_PRICE
 
     def step(self) -> Array:
         """Change (N - 1, f) of the free joints at the interior knots, on the null spaces."""
@@ -127,7 +139,7 @@ class _Relaxation:
             for k, factor in enumerate((main, next_one, next_two))
         )
         bent = before[:, None] * self._q[:-2] + here[:, None] * self._q[1:-1] + after[:, None] * self._q[2:]
-        pull = self._attraction * (self._q - self._walked)
+        pull = self._attraction[:, None] * (self._q - self._walked)
         pull[:-2] += before[:, None] * bent
         pull[1:-1] += here[:, None] * bent
         pull[2:] += after[:, None] * bent

@@ -1,0 +1,28 @@
+"""IRL24x: data lists."""
+
+from irlx.diagnostics.codes.code import error, warning
+
+DATA_LISTS = (
+    error(
+        "IRL240",
+        "no data list '{name}': there is no file {path}{near}",
+        "a data list NAME is the file NAME.dat beside the program",
+    ),
+    error("IRL241", "the data list '{name}' cannot be read from {path}: {cause}"),
+    error(
+        "IRL242",
+        "expected a data list, found {found}",
+        "a data list begins with DATALIST name; and ends with ENDDATALIST",
+    ),
+    warning(
+        "IRL243",
+        "the data list is called '{found}' here and '{name}' where it is imported",
+        "write DATALIST {name};",
+    ),
+    error("IRL244", "the data list '{name}' is imported twice", "remove one of the two"),
+    error(
+        "IRL245",
+        "a value of a data list cannot use '{name}', {what}",
+        "values are made of literals, constructors, and names further up in the list",
+    ),
+)
