@@ -193,9 +193,9 @@ class Pacer:
         place = self._locate(block.origin)
         rotation, position = self._setup.kinematics.tool_pose(self.q)
         posture = self._asked_posture(block, in_force, place)
-        asked = posed(block, self._setup.kinematics)
-        check_targets(asked, self._setup.kinematics, self.q, place)
-        plan = plan_path(asked, rotation, position, self._setup.dt, place)
+        told = posed(block, self._setup.kinematics)
+        check_targets(told, self._setup.kinematics, self.q, place)
+        plan = plan_path(told, rotation, position, self._setup.dt, place)
         if plan.ticks == 0:
             self._warn_of_posture_left(self.q, posture, block, place)
             return None
