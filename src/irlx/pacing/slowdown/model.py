@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from irlx.motion.pose_path import Poses
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
+from irlx.transform.row_rank import independent_rows, usual_rank
 
 Array = NDArray[np.float64]
 
@@ -66,6 +67,7 @@ class Model:
     ) -> OntoPath:
         """Postures after `rounds` W-least Newton steps towards the targets.
 
+        Where the free joints cannot move all of a pose, whatever their posture, they do what they can of it.
         Frozen joints keep their bits, so do those of single rows in `held` (N, n). Raises
         numpy.linalg.LinAlgError where a Jacobian has lost its rank.
         """
@@ -74,15 +76,20 @@ class Model:
             inverse = np.where(held[:, None, self.free], 0.0, inverse)
         moved = q.copy()
         twists, jacobians = np.zeros((len(q), 6)), np.zeros((len(q), 6, int(np.sum(self.free))))
+        rank, reach = usual_rank(self.kinematics, q[0], self.free), self.kinematics.description.reach
         for _ in range(rounds):
             twists, jacobians = self.differences(moved, targets)
-            scaled = jacobians * inverse
-            gram = scaled @ np.swapaxes(jacobians, 1, 2)
+            asked, rows = twists[:, :, None], jacobians
+            if self.freedom >= 0 and rank < rows.shape[1]:
+                chosen = independent_rows(jacobians, reach, rank)
+                asked, rows = chosen @ asked, chosen @ rows
+            scaled = rows * inverse
+            gram = scaled @ np.swapaxes(rows, 1, 2)
             if self.freedom >= 0:
-                k = np.linalg.solve(gram, twists[:, :, None])
+                k = np.linalg.solve(gram, asked)
             else:
                 # Fewer joints than the pose has coordinates: what they can do of it.
-                k = np.linalg.pinv(gram, rcond=_NO_WAY, hermitian=True) @ twists[:, :, None]
+                k = np.linalg.pinv(gram, rcond=_NO_WAY, hermitian=True) @ asked
             moved[:, self.free] += (np.swapaxes(scaled, 1, 2) @ k)[:, :, 0]
         return OntoPath(moved, twists, jacobians)
 
@@ -99,6 +106,6 @@ class OntoPath(NamedTuple):
 
 
 def null_spaces(jacobians: Array) -> Array:
-    """Orthonormal bases (N, f, r) of the null spaces of Jacobians (N, 6, f)."""
+    """Orthonormal bases (N, f, r) of the null spaces of Jacobians (N, m, f)."""
     orthonormal = np.linalg.qr(np.swapaxes(jacobians, 1, 2), mode="complete")[0]
-    return np.asarray(orthonormal[:, :, 6:])
+    return np.asarray(orthonormal[:, :, jacobians.shape[1] :])
