@@ -18,16 +18,18 @@ if TYPE_CHECKING:
     from irlx.diagnostics import Diagnostic, IrlxError
     from irlx.pipeline import run, stream
     from irlx.program import Program, ProgramError, load
+    from irlx.registration import register
     from irlx.report.run import Run, RunError, RunInterrupted
+    from irlx.robot.equality import Constraint
     from irlx.streams.error import StreamError
     from irlx.streams.sample import Sample
-    from irlx.transform.criteria.library import register
     from irlx.transform.measures.measure import Measure as Criterion
     from irlx.verification import verify
     from irlx.verifier.findings.report import Report
 
 _HOMES = {
     "CellError": "irlx.cell.errors",
+    "Constraint": "irlx.robot.equality",
     "Criterion": "irlx.transform.measures.measure:Measure",
     "Diagnostic": "irlx.diagnostics",
     "IrlxError": "irlx.diagnostics",
@@ -41,7 +43,7 @@ _HOMES = {
     "StreamError": "irlx.streams.error",
     "check": "irlx.checking",
     "load": "irlx.program",
-    "register": "irlx.transform.criteria.library",
+    "register": "irlx.registration",
     "run": "irlx.pipeline",
     "stream": "irlx.pipeline",
     "verify": "irlx.verification",
@@ -50,6 +52,7 @@ _HOMES = {
 
 __all__ = [
     "CellError",
+    "Constraint",
     "Criterion",
     "Diagnostic",
     "IrlxError",

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from math import inf
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,20 +15,24 @@ from numpy.typing import NDArray
 from irlx._version import __version__
 from irlx.blocks import Block, Origin, Question
 from irlx.cell.cell import Cell
+from irlx.cell.errors import CellError
 from irlx.cell.find import is_file
 from irlx.cell.load import load_cell
 from irlx.cell.setting import setting_of
 from irlx.diagnostics import Diagnostic, IrlxError, Place, Span, report
+from irlx.diagnostics.diagnostic import near_matches
 from irlx.interpreter.interpret import interpret
 from irlx.pacing.explanation import TickExplanation
 from irlx.pacing.explanation import explain_tick as explain_row
 from irlx.pacing.pacer import Pacer, PacingSetup
 from irlx.pacing.rows import MotionRows
 from irlx.program import Program, ProgramError, cell_path, load
-from irlx.promises import LONGEST_TICK, SHORTEST_TICK
+from irlx.promises import CONDITION, LONGEST_TICK, SHORTEST_TICK
 from irlx.report.recording import Recording
 from irlx.report.run import Run, RunError, RunInterrupted
+from irlx.robot.equality import Constraint, LinearConstraint
 from irlx.robot.kinematics import Kinematics
+from irlx.robot.registered_constraints import registered_constraints
 from irlx.streams.joint_stream import FORMAT_VERSION, StreamHeader
 from irlx.streams.sample import Sample
 
@@ -107,7 +112,7 @@ class Execution:
         cell = job.cell
         dt = job.tick_ns / 1e9
         setup = PacingSetup(
-            Kinematics(cell.robot), cell.limits, cell.weights, cell.start, dt, max_slow=job.max_slow
+            kinematics_of(cell), cell.limits, cell.weights, cell.start, dt, max_slow=job.max_slow
         )
         self.kinematics = setup.kinematics
         self._pacer = Pacer(setup, self._locate)
@@ -165,10 +170,9 @@ class Execution:
         if rows is None or not rows.first_tick <= tick < rows.first_tick + len(rows):
             return None
         cell = self.job.cell
-        slides = tuple(axis.is_prismatic for axis in cell.robot.axes)
         limits = rows.limits or cell.limits
-        names, dt = cell.robot.joint_names, self.job.tick_ns / 1e9
-        return explain_row(rows, start, tick, limits, cell.weights, names, slides, dt)
+        dt = self.job.tick_ns / 1e9
+        return explain_row(rows, start, tick, limits, cell.weights, self.kinematics, dt)
 
     def recording(self) -> Recording:
         """A recording that begins at the cell's start posture."""
@@ -182,6 +186,36 @@ class Execution:
 
     def _locate(self, origin: Origin) -> Place:
         return Place.in_text(self.job.program.source, Span(origin.start, origin.end))
+
+
+def kinematics_of(cell: Cell) -> Kinematics:
+    """Kinematics of a cell's robot with its constraints.
+
+    Raises CellError: IRL617 for a constraint that nobody registered, IRL616 for one that the start breaks.
+    """
+    plain = Kinematics(cell.robot)
+    if not (cell.relations or cell.registered):
+        return plain
+    names = cell.robot.joint_names
+    found: list[Constraint] = [LinearConstraint(relation, names) for relation in cell.relations]
+    makers = registered_constraints()
+    for asked in cell.registered:
+        maker = makers.get(asked.use)
+        if maker is None:
+            known = ", ".join(sorted(makers)) or "none"
+            data: dict[str, Any] = {
+                "use": asked.use,
+                "near": near_matches(asked.use, sorted(makers)),
+                "known": known,
+            }
+            raise CellError(report("IRL617", asked.place, **data))
+        constraint = maker(plain)
+        broken = float(np.max(np.abs(constraint.residual(cell.start)), initial=0.0))
+        if not broken <= CONDITION:
+            told: dict[str, Any] = {"name": asked.name, "found": f"{broken:.6g}", "due": "0"}
+            raise CellError(report("IRL616", asked.place, **told))
+        found.append(constraint)
+    return plain.constrained(found)
 
 
 def header_of(job: Job) -> StreamHeader:

@@ -51,6 +51,9 @@ def rounding_allowance(q: NDArray[np.float64], dt: float) -> tuple[float, float]
     return 2.0 * unit / dt, 4.0 * unit / dt**2
 
 
+CONDITION = 1e-6
+"""Largest amount by which a row breaks a constraint of the cell, in the unit of its first joint, rad or m."""
+
 # ---- A closed path under CYCLICSTART ends in the posture it began with
 
 CLOSURE = 1e-6

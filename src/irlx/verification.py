@@ -65,7 +65,7 @@ def verify(
     if of_program is not None and header is not None and Path(of_program.file).name == header.cell_name:
         strict = of_program
     if strict is not None:
-        reference = Reference(strict.robot, strict.limits, strict.start)
+        reference = Reference(strict.robot, strict.limits, strict.start, strict.relations)
     elif header is not None:
         reference = _looked_up(header, beside, of_program)
     compare = None if text is None else partial(_program_check, text, of_program, may_lack_blocks)
@@ -96,7 +96,9 @@ def _looked_up(header: StreamHeader, beside: Path, of_program: Cell | None) -> R
     for cell in _cells(header, beside, of_program):
         if _is_of(header, cell.robot):
             same = _same_limits(header, cell)
-            return Reference(cell.robot, cell.limits, cell.start) if same else Reference(cell.robot)
+            if not same:
+                return Reference(cell.robot)
+            return Reference(cell.robot, cell.limits, cell.start, cell.relations)
     if header.robot_model in robot_names():
         from irlx.cell.model import load_robot
 

@@ -40,8 +40,13 @@ def test_a_byte_order_mark_is_no_fault(cell, koch):
 @pytest.mark.parametrize(
     ("text", "key", "near", "known"),
     [
-        ("[robt]\n", "robt", "; did you mean 'robot'?", "robot, motion, frames, obstacle, signals"),
-        ("[robot]\nmodl = 1\n", "robot.modl", "; did you mean 'model'?", "model, tip, locked, start"),
+        (
+            "[robt]\n",
+            "robt",
+            "; did you mean 'robot'?",
+            "robot, motion, frames, constraint, obstacle",
+        ),
+        ("[robot]\nmodl = 1\n", "robot.modl", "; did you mean 'model'?", "model, tip, locked, task, start"),
         ("[robot.limits]\nspeeed = 1\n", "robot.limits.speeed", "; did you mean 'speed'?", "position, speed"),
         ("[robot.limits]\njerk = 1\n", "robot.limits.jerk", "", "position, speed, acceleration"),
         ("[motion]\ntick = 3\n", "motion.tick", "; did you mean 'tick_ms'?", "tick_ms, speed, acc"),
@@ -263,7 +268,7 @@ def test_a_urdf_that_cannot_be_used(faults, content, cause):
 
 def test_fewer_than_six_axes(faults, chain):
     expected = (
-        "the joints that move the tool frame link4 are j1, j2, j3, j4: 4, but a pose needs at least six"
+        "the joints that move the tool frame link4 are j1, j2, j3, j4: 4, but the task has 6 coordinates"
     )
     assert faults("[robot]\nmodel = 'c.urdf'\n", c=chain(4)) == [("IRL613", "robot.model", expected)]
 

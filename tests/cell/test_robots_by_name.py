@@ -23,7 +23,10 @@ needs_robot_data = pytest.mark.skipif(
 )
 AXES = {"baxter_left": 7, "baxter_right": 7, "kinova": 6, "panda": 7, "talos_left": 9, "tiago": 8}
 AXES |= {"ur10": 6, "ur3": 6, "ur5": 6, "xarm7": 7, "z1": 6}
-OWN = {"arm7": 7, "rail6": 7}
+OWN = {"arm7": 7, "rail6": 7, "mobile8": 8}
+WEIGHTS = {"mobile8": [60, 60, 6, 5, 4, 3, 2, 1]}
+MASSES = {"mobile8": 200.0}
+"""Weights of robots that bring their own: those of the platform are per m2."""
 
 
 def named(cell, name):
@@ -38,7 +41,7 @@ def smallest_singular_value(found):
 
 @pytest.mark.req("CELL-04")
 def test_names():
-    assert packaged_names() == ("arm7", "koch11", "rail6")
+    assert packaged_names() == ("arm7", "koch11", "mobile8", "planar3", "planar4", "rail6")
     assert external_names() == tuple(sorted(AXES))
     assert robot_names() == packaged_names() + external_names()
 
@@ -48,7 +51,7 @@ def test_names():
 def test_robots_of_our_own_start_well(cell, name):
     found = named(cell, name)
     assert (len(found.robot.axes), found.robot.tip) == (OWN[name], "tool")
-    assert found.weights.tolist() == [7, 6, 5, 4, 3, 2, 1]
+    assert found.weights.tolist() == WEIGHTS.get(name, [7, 6, 5, 4, 3, 2, 1])
     assert found.warnings == ()
     assert np.isfinite(found.limits.speed_upper).all()
     assert np.isfinite(found.limits.acceleration_upper).all()
@@ -72,8 +75,23 @@ CHAINS = {
         ],
         (0.05, 0, 0),
     ),
+    "mobile8": (
+        "-|zyyxyx",
+        [
+            (0, 0, 0.06),
+            (0, 0, 0),
+            (0.1, 0, 0.24),
+            (0.08, 0, 0.2),
+            (0, 0, 0.42),
+            (0.18, 0, 0.05),
+            (0.2, 0, 0),
+            (0.07, 0, 0),
+        ],
+        (0.05, 0, 0),
+    ),
 }
-"""Axes (| slides along y) and the steps to them, and to the tool, m: the arms as the reference draws them."""
+SLIDES = {"|": (0, 1, 0), "-": (1, 0, 0)}
+"""Axes (slides | along y, - along x), the steps to them, and to the tool, m: as the reference draws them."""
 
 
 @pytest.mark.req("CELL-04")
@@ -83,15 +101,15 @@ def test_geometry_of_our_own(cell, name):
     axes, steps, tool = CHAINS[name]
     kinematics = Kinematics(found.robot)
     model = pin.buildModelFromXML(packaged_urdf(name))
-    assert 15.0 < sum(inertia.mass for inertia in model.inertias[1:]) < 100.0
+    assert 15.0 < sum(inertia.mass for inertia in model.inertias[1:]) < MASSES.get(name, 100.0)
     rng = np.random.default_rng(7)
     for _ in range(20):
         q = rng.uniform(found.limits.position_lower, found.limits.position_upper)
         position, rotation = np.zeros(3), Rotation.identity()
         for axis, step, value in zip(axes, steps, q, strict=True):
             position = position + rotation.apply(step)
-            if axis == "|":
-                position = position + rotation.apply([0, value, 0])
+            if axis in SLIDES:
+                position = position + rotation.apply(value * np.array(SLIDES[axis]))
             else:
                 rotation = rotation * Rotation.from_euler(axis, value)
         actual = kinematics.tool_pose(q)

@@ -108,7 +108,7 @@ def test_freezing_a_joint_there_is_not_or_too_many_is_refused(shop, refused) -> 
     assert refused(lambda: shop.freeze(2, 8), "IRL346", 1).data == {"number": 8, "joints": 7}
     assert refused(lambda: shop.freeze(0), "IRL346", 2).data["number"] == 0
     reason = refused(lambda: shop.freeze(1, 5), "IRL347", 3)
-    assert reason.data == {"frozen": 2, "joints": 7, "spare": 1}
+    assert reason.data == {"frozen": 2, "joints": 7, "spare": 1, "rows": 6}
     shop.freeze(5, 5)
     assert shop.pacer.options.frozen == (5, 5)
 

@@ -15,7 +15,8 @@ from irlx.transform.compact import StepProblem
 from irlx.transform.criteria.criterion import Criterion
 from irlx.transform.qp.proxqp import ProxQpSolver
 from irlx.transform.step_bounds import BoundSource, StepBounds, StepLimiter
-from irlx.transform.tick import TickProblem, TickSolution, TickSolver
+from irlx.transform.tick import TickSolution, TickSolver
+from irlx.transform.tick_problem import TickProblem
 
 ARM = [("0 0 0.34", "0 0 1"), ("0 0 0", "0 1 0"), ("0 0 0.4", "0 0 1"), ("0 0 0", "0 -1 0")]
 ARM += [("0 0 0.4", "0 0 1"), ("0 0 0", "0 1 0"), ("0 0 0", "0 0 1")]

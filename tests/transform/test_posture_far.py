@@ -13,7 +13,8 @@ from irlx.transform.criteria.posture import Posture
 from irlx.transform.fibre import Fibre
 from irlx.transform.posture_search import closest, nearest_approach, nearest_posture
 from irlx.transform.qp.proxqp import ProxQpSolver
-from irlx.transform.tick import TickProblem, TickSolver
+from irlx.transform.tick import TickSolver
+from irlx.transform.tick_problem import TickProblem
 
 
 def limits_of(arm) -> JointLimits:

@@ -48,23 +48,22 @@ def test_independent_rows_have_the_null_space_of_all(arm7) -> None:
     for _ in range(50):
         q = rng.uniform(-2.5, 2.5, 7)
         jacobian = jacobian_at(arm7, q)[:, moving]
-        rows = independent_rows(jacobian, arm7.size, 5) @ jacobian
+        rows = independent_rows(jacobian, arm7.kinematics.row_scale, 5) @ jacobian
         assert rows.shape == (5, 6)
         along = np.linalg.svd(rows)[2][-1]
         assert np.max(np.abs(jacobian @ along)) < 1e-13
-        assert np.array_equal(independent_rows(jacobian, arm7.size, 6), np.eye(6))
+        assert np.array_equal(independent_rows(jacobian, arm7.kinematics.row_scale, 6), np.eye(6))
 
 
 def test_many_jacobians_at_once_give_the_rows_of_each(arm7) -> None:
-    rng = np.random.default_rng(3)
-    several = np.array(
-        [jacobian_at(arm7, rng.uniform(-2.5, 2.5, 7))[:, moving_but(7, ELBOW)] for _ in range(9)]
-    )
-    together = independent_rows(several, arm7.size, 5)
+    rng, scale = np.random.default_rng(3), arm7.kinematics.row_scale
+    moving = moving_but(7, ELBOW)
+    several = np.array([jacobian_at(arm7, rng.uniform(-2.5, 2.5, 7))[:, moving] for _ in range(9)])
+    together = independent_rows(several, scale, 5)
     assert together.shape == (9, 5, 6)
     for rows, jacobian in zip(together, several, strict=True):
-        np.testing.assert_allclose(rows, independent_rows(jacobian, arm7.size, 5), rtol=0, atol=1e-12)
-    assert independent_rows(several, arm7.size, 6).shape == (9, 6, 6)
+        np.testing.assert_allclose(rows, independent_rows(jacobian, scale, 5), rtol=0, atol=1e-12)
+    assert independent_rows(several, scale, 6).shape == (9, 6, 6)
 
 
 def test_postures_come_onto_a_pose_that_joints_can_reach_although_their_rows_depend(arm7) -> None:

@@ -14,7 +14,8 @@ from irlx.transform.criteria.posture import Posture
 from irlx.transform.qp.proxqp import ProxQpSolver
 from irlx.transform.qp.solver import QpSolution
 from irlx.transform.step_bounds import StepLimiter
-from irlx.transform.tick import TickProblem, TickSolver
+from irlx.transform.tick import TickSolver
+from irlx.transform.tick_problem import TickProblem
 
 
 class Counted:

@@ -13,6 +13,7 @@ SHARED = {
     "irlx.promises",
     "irlx.robot.description",
     "irlx.robot.limits",
+    "irlx.robot.relation",
     "irlx.streams.error",
     "irlx.streams.joint_stream",
     "irlx.streams.scan",

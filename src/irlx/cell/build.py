@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.cell.cell import Cell, MotionDefaults, NamedFrame
+from irlx.cell.constraints import read_constraints
 from irlx.cell.errors import CellError
 from irlx.cell.limit_entry import LimitEntry
 from irlx.cell.schema import CellFile, FrameSection, LimitsSection, RobotSection
@@ -36,6 +37,7 @@ def build_cell(content: CellFile, robot_section: RobotSection, robot: RobotDescr
     _status_joints(robot_section, robot, file, errors)
     q = np.array([to_si(robot, joint, value) for joint, value in enumerate(start[:count])])
     errors += _frame_errors(content, file)
+    constraints = read_constraints(content.constraint, robot, q if not errors else None, file, errors)
     if not errors:
         errors += _start_errors(q, limits, robot, file)
     if errors:
@@ -54,6 +56,7 @@ def build_cell(content: CellFile, robot_section: RobotSection, robot: RobotDescr
         ),
         {name: _frame(section) for name, section in content.frames.items()},
         _warnings(content, limits, file),
+        *constraints,
     )
 
 

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.diagnostics import Diagnostic
+from irlx.diagnostics import Diagnostic, Place
 from irlx.robot.description import RobotDescription
 from irlx.robot.limits import JointLimits
+from irlx.robot.relation import JointRelation
 
 Array = NDArray[np.float64]
 
@@ -36,10 +37,20 @@ class NamedFrame:
 
 
 @dataclass(frozen=True)
+class RegisteredConstraint:
+    """A constraint that a Python module is to register as `use`; `name` and `place` for messages."""
+
+    name: str
+    use: str
+    place: Place
+
+
+@dataclass(frozen=True)
 class Cell:
     """Robot, limits (SI), least-motion weights (n,), start posture (n,) rad | m, tick and frames.
 
-    `file` names the cell file for messages, `model` is the robot as the cell gives it.
+    `file` names the cell file for messages, `model` is the robot as the cell gives it; `relations` (SI) and
+    `registered` constraints hold beside the tool pose.
     """
 
     file: str
@@ -52,3 +63,5 @@ class Cell:
     motion: MotionDefaults
     frames: Mapping[str, NamedFrame]
     warnings: tuple[Diagnostic, ...] = ()
+    relations: tuple[JointRelation, ...] = ()
+    registered: tuple[RegisteredConstraint, ...] = ()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ from irlx.cell.packaged import packaged_names
 from irlx.cell.schema import RobotSection, Section
 from irlx.diagnostics import Place, report
 from irlx.diagnostics.diagnostic import near_matches
-from irlx.robot.description import RobotDescription
+from irlx.robot.description import COORDINATES, RobotDescription
 from irlx.robot.urdf import RobotModelError, read_urdf
 
 
@@ -58,7 +59,9 @@ def load_robot(section: RobotSection, file: str, folder: Path) -> RobotDescripti
     """Description of the robot a cell names; paths are relative to `folder`, the cell's own.
 
     Raises CellError: IRL610 no model, IRL611 unknown name or missing file, IRL612 a URDF that
-    cannot be used, IRL613 fewer than six axes, IRL614 a robot of an extra that is not installed.
+    cannot be used, IRL613 fewer axes than its task has
+    coordinates, IRL614 a robot of an extra that is not installed, IRL615 a task
+    that leaves out what joints move.
     """
     place = Place(file, key="robot.model")
     model = section.model
@@ -70,14 +73,34 @@ def load_robot(section: RobotSection, file: str, folder: Path) -> RobotDescripti
     slides = {joint.name for joint in held.joints if joint.is_prismatic}
     locked = {name: value * (1e-3 if name in slides else _DEGREE) for name, value in section.locked.items()}
     robot = _read(text, section, locked, file)
-    if len(robot.axes) < _TASK_ROWS:
+    task = section.task
+    if task is None and model in robot_names():
+        task = named_section(model).task
+    if task is not None:
+        robot = replace(robot, coordinates=tuple(name for name in COORDINATES if name in task))
+    if len(robot.axes) < len(robot.coordinates):
         names = ", ".join(robot.joint_names) or "none"
-        raise CellError(report("IRL613", place, tip=robot.tip, found=len(robot.axes), names=names))
+        data: dict[str, Any] = {"tip": robot.tip, "found": len(robot.axes), "names": names}
+        raise CellError(report("IRL613", place, rows=len(robot.coordinates), **data))
+    _check_left_out(robot, file)
     return robot
 
 
+def _check_left_out(robot: RobotDescription, file: str) -> None:
+    """Raise CellError, IRL615, for coordinates that the task leaves out although joints move them."""
+    free = [name for name in COORDINATES if name not in robot.coordinates]
+    if not free:
+        return
+    # Imported here: most robots are asked for whole poses, and looking at a cell stays light.
+    from irlx.robot.kinematics import Kinematics
+
+    fixed = Kinematics(robot).immovable.coordinates
+    moved = [name for name in free if name not in fixed]
+    if moved:
+        raise CellError(report("IRL615", Place(file, key="robot.task"), names=", ".join(moved)))
+
+
 _DEGREE = 0.017453292519943295
-_TASK_ROWS = 6
 
 
 def _read(text: str, section: RobotSection, locked: dict[str, float], file: str) -> RobotDescription:

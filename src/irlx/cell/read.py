@@ -12,6 +12,7 @@ from irlx.cell.errors import CellError
 from irlx.cell.expectation import as_written, expectation
 from irlx.cell.schema import (
     CellFile,
+    ConstraintSection,
     FrameSection,
     LimitsSection,
     MotionSection,
@@ -32,6 +33,7 @@ _SECTIONS: dict[tuple[str, ...], type[BaseModel]] = {
     ("robot", "limits"): LimitsSection,
     ("motion",): MotionSection,
     ("frames", "*"): FrameSection,
+    ("constraint", "*"): ConstraintSection,
 }
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 from pydantic_core import PydanticCustomError
@@ -13,6 +13,7 @@ from irlx.language.builtins import SYSTEM_VARIABLES
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 Percent = Annotated[float, Field(gt=0.0, le=100.0)]
+Coordinate = Literal["x", "y", "z", "rx", "ry", "rz"]
 Vector = Annotated[list[Number], Field(min_length=3, max_length=3)]
 
 
@@ -43,11 +44,12 @@ class LimitsSection(Section):
 
 
 class RobotSection(Section):
-    """The robot: model, tool frame, locked joints, posture and weights."""
+    """The robot: model, tool frame, locked joints, coordinates of its task, posture and weights."""
 
     model: str | None = None
     tip: str | None = None
     locked: dict[str, Number] = Field(default_factory=dict)
+    task: Annotated[list[Coordinate], Field(min_length=1)] | None = None
     start: list[Number] | None = None
     weights: list[Positive] | None = None
     status_joints: list[str] = Field(default_factory=list)
@@ -73,11 +75,25 @@ class FrameSection(Section):
     rpy: Vector = Field(default_factory=lambda: [0.0, 0.0, 0.0])
 
 
+class ConstraintSection(Section):
+    """A condition that holds beside the tool pose.
+
+    `joints`: a factor for each joint that takes part; sum of factor times joint value = `value` (deg | mm),
+    by default that of the start posture. `use` instead: the name of a constraint registered in Python.
+    """
+
+    name: Annotated[str, Field(min_length=1)]
+    joints: Annotated[dict[str, Number], Field(min_length=1)] | None = None
+    value: Number | None = None
+    use: str | None = None
+
+
 class CellFile(Section):
     """A whole cell file. `obstacle` and `signals` are kept for later versions and not looked into."""
 
     robot: RobotSection = Field(default_factory=RobotSection)
     motion: MotionSection = Field(default_factory=MotionSection)
     frames: dict[FrameName, FrameSection] = Field(default_factory=dict)
+    constraint: list[ConstraintSection] = Field(default_factory=list)
     obstacle: list[dict[str, Any]] = Field(default_factory=list)
     signals: dict[str, Any] = Field(default_factory=dict)

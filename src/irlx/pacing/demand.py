@@ -13,15 +13,12 @@ from irlx.pacing.clock import Clock
 
 Array = NDArray[np.float64]
 
-ALL_TASK_ROWS = (True,) * 6
-
 
 class Demand(NamedTuple):
     """Tool pose asked for at a tick.
 
     `tick` counts from the start of the stream, `s` is the path parameter; `position` (3,) m,
-    `rotation` (3, 3), `twist` (6,) (m/s, rad/s) of the tool in the world; `task_rows` says which of
-    the six coordinates of the pose count.
+    `rotation` (3, 3), `twist` (6,) (m/s, rad/s) of the tool in the world.
     """
 
     tick: int
@@ -29,7 +26,6 @@ class Demand(NamedTuple):
     position: Array
     rotation: Array
     twist: Array
-    task_rows: tuple[bool, ...] = ALL_TASK_ROWS
 
 
 DemandModifier = Callable[[Demand], Demand]

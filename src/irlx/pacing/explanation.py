@@ -10,9 +10,12 @@ from numpy.typing import NDArray
 from irlx.blocks import MoveBlock
 from irlx.pacing.demand import Demand
 from irlx.pacing.rows import MotionRows, PathPart
+from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
+from irlx.transform.criteria.criterion import Criterion
 from irlx.transform.criteria.least_motion import LeastMotion
-from irlx.transform.step_bounds import BoundSource, StepLimiter
+from irlx.transform.step_bounds import BoundSource, StepBounds, StepLimiter
+from irlx.transform.tick_problem import TickProblem, build_tick
 
 Array = NDArray[np.float64]
 
@@ -62,11 +65,35 @@ class PathTick:
 
 
 @dataclass(frozen=True)
+class QuadraticTick:
+    """The quadratic problem of the tick's first Newton step, as `build_tick` gives it; rad and m.
+
+        min g'd + 1/2 d'Hd    subject to  J d = e,  lower <= d <= upper
+
+    `joints`: names of the n free joints; `rows`: what the m rows are. `left` e (m,), `jacobian` J (m, n),
+    `gradient` g (n,), `hessian` H: its diagonal (n,), or whole (n, n). The bounds are those of the joints.
+    """
+
+    joints: tuple[str, ...]
+    rows: tuple[str, ...]
+    left: tuple[float, ...]
+    jacobian: tuple[tuple[float, ...], ...]
+    gradient: tuple[float, ...]
+    hessian: tuple[float, ...] | tuple[tuple[float, ...], ...]
+
+    @property
+    def unknowns(self) -> int:
+        """Unknowns of the compact problem: joints more than rows."""
+        return max(len(self.joints) - len(self.rows), 0)
+
+
+@dataclass(frozen=True)
 class TickExplanation:
     """What a tick was asked for and what it did.
 
     `motion` in the program's words, its `line`; `way_of_pacing`: how its row was found; `path`: what was
-    asked for, None where that was no path (PTP, RECONFIGURATION, a hold); `path_error` m and rad.
+    asked for, None where that was no path (PTP, RECONFIGURATION, a hold), and so is `problem`; `path_error` m
+    and rad.
     """
 
     tick: int
@@ -78,6 +105,7 @@ class TickExplanation:
     path_error: tuple[float, float]
     joints: tuple[JointTick, ...]
     criteria: tuple[CriterionValue, ...]
+    problem: QuadraticTick | None = None
 
     def to_plain(self) -> dict[str, object]:
         """The explanation as JSON-able data."""
@@ -90,20 +118,23 @@ def explain_tick(
     tick: int,
     limits: JointLimits,
     weights: Array,
-    names: tuple[str, ...],
-    prismatic: tuple[bool, ...],
+    kinematics: Kinematics,
     dt: float,
 ) -> TickExplanation:
     """Explanation of a tick of a motion from rest at posture `start` (n,).
 
     `limits` in force; `weights` (n,) of least motion.
     """
+    robot = kinematics.description
+    names, prismatic = robot.joint_names, tuple(axis.is_prismatic for axis in robot.axes)
     row = tick - rows.first_tick
     before = np.vstack([start, start, rows.q])
     step, last_step = before[row + 2] - before[row + 1], before[row + 1] - before[row]
     asked = rows.path.demands if rows.path is not None else ()
     demand = asked[row] if row < len(asked) else None
-    joints = _joints(rows, row, StepLimiter(limits, dt), step, last_step / dt, names, prismatic)
+    limiter, speed = StepLimiter(limits, dt), last_step / dt
+    joints = _joints(rows, row, limiter, step, speed, names, prismatic)
+    bounds = limiter.bounds(before[row + 1], speed)
     return TickExplanation(
         tick,
         tick * dt,
@@ -114,7 +145,33 @@ def explain_tick(
         (float(rows.path_position_error[row]), float(rows.path_orientation_error[row])),
         joints,
         _criteria(rows, row, demand, before[row + 1], step, weights),
+        _problem(rows, row, demand, before[row + 1], bounds, kinematics),
     )
+
+
+def _problem(
+    rows: MotionRows, row: int, demand: Demand | None, q: Array, bounds: StepBounds, kinematics: Kinematics
+) -> QuadraticTick | None:
+    if demand is None or rows.path is None:
+        return None
+    target = kinematics.target(demand.rotation, demand.position)
+    free = rows.path.free
+    built = build_tick(kinematics, TickProblem(target, q, bounds, _chosen(rows.path, row, demand), free))
+    names = kinematics.description.joint_names
+    hessian = built.hessian.tolist()
+    return QuadraticTick(
+        tuple(name for name, moves in zip(names, free, strict=True) if moves),
+        kinematics.row_names,
+        tuple(built.twist.tolist()),
+        tuple(tuple(line) for line in built.jacobian.tolist()),
+        tuple(built.gradient.tolist()),
+        tuple(tuple(line) for line in hessian) if built.hessian.ndim == 2 else tuple(hessian),
+    )
+
+
+def _chosen(path: PathPart, row: int, demand: Demand) -> Criterion:
+    """Criterion in force at a row."""
+    return path.term.at(demand.s, demand.s - (path.demands[row - 1].s if row > 0 else 0.0))
 
 
 def _way_of_pacing(rows: MotionRows, row: int) -> str:
@@ -184,8 +241,7 @@ def _criteria(
     least = LeastMotion(weights)
     if demand is None or rows.path is None:
         return (CriterionValue(least.name, least.value(q, step), False),)
-    advance = demand.s - (rows.path.demands[row - 1].s if row > 0 else 0.0)
-    chosen = rows.path.term.at(demand.s, advance).begun(q)
+    chosen = _chosen(rows.path, row, demand).begun(q)
     values = [CriterionValue(chosen.name, chosen.value(q, step), True)]
     if chosen.name != least.name:
         values.append(CriterionValue(least.name, least.value(q, step), False))

@@ -35,10 +35,10 @@ def way_to_best(model: Model, q: Array, goal: Array, qp: QpSolver) -> Array:
     already, and where it is singular.
     """
     kinematics, limits, free = model.kinematics, model.limits, model.movable
-    _, jacobian = kinematics.difference(q, kinematics.target(*kinematics.tool_pose(q)))
+    _, jacobian = kinematics.here(q)
     problem = StepProblem(
         jacobian[:, free],
-        np.zeros(6),
+        np.zeros(kinematics.rows),
         (model.weights * (q - goal))[free],
         model.weights[free],
         np.where(q - limits.position_lower <= _ON_LIMIT, 0.0, -np.inf)[free],

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.blocks import LimitKind, Origin
+from irlx.blocks import LimitKind
 from irlx.diagnostics import Diagnostic, Place, report
 from irlx.motion.plan_path import PlannedPath
 from irlx.motion.pose_path import PosePath
@@ -20,7 +20,7 @@ from irlx.pacing.slowdown.clock_bounds import Governor
 from irlx.pacing.slowdown.ladder import TimedCurve
 from irlx.pacing.walk import Halt
 from irlx.robot.description import RobotDescription
-from irlx.robot.kinematics import Kinematics
+from irlx.robot.kinematics import Kinematics, Sizes
 from irlx.robot.limits import JointLimits
 from irlx.transform.nearest import Nearest, scaled_singular_values
 from irlx.transform.posture_search import closest, nearest_approach
@@ -42,12 +42,12 @@ _LIMIT_NAMES = {
 @dataclass(frozen=True)
 class Surroundings:
     """What the diagnosis needs to know of the move: robot, limits in force, free joints, and the clause or
-    switch of the program that narrowed a kind of limit."""
+    switch of the program that narrowed a kind of limit, in words."""
 
     kinematics: Kinematics
     limits: JointLimits
     free: NDArray[np.bool_]
-    asked_by: Mapping[LimitKind, Origin] = field(default_factory=dict)
+    asked_by: Mapping[LimitKind, str] = field(default_factory=dict)
 
 
 def joint_value(robot: RobotDescription, joint: int, value: float, per: str = "") -> str:
@@ -60,12 +60,12 @@ def explain_halt(
     halt: Halt, around: Surroundings, path: PosePath, goal: Nearest | None, place: Place
 ) -> Diagnostic:
     """Diagnostic of a tick that no joint step can do (IRL520: bounds, IRL521: out of reach)."""
-    robot = around.kinematics.description
     solution = halt.solution
-    _, jacobian = around.kinematics.difference(
-        solution.q, around.kinematics.target(halt.demand.rotation, halt.demand.position)
+    kinematics = around.kinematics
+    _, jacobian = kinematics.difference(
+        solution.q, kinematics.target(halt.demand.rotation, halt.demand.position)
     )
-    sigma = float(scaled_singular_values(jacobian[:, around.free], robot.reach)[-1])
+    sigma = float(scaled_singular_values(jacobian[:, around.free], kinematics.row_scale)[-1])
     unit, scale = _way_unit(path)
     held = _held_joints(halt, around)
     data: dict[str, Any] = {
@@ -74,7 +74,7 @@ def explain_halt(
         "length": f"{path.length * scale:.6g} {unit}",
         "held": "; ".join(held) if held else _nearest_to_limit(solution.q, around),
         "sigma": f"{sigma:.2g}",
-        "missing": _missing(solution.twist, goal),
+        "missing": _missing(kinematics.sizes(solution.twist), goal),
     }
     return report("IRL520" if held else "IRL521", place, **data)
 
@@ -127,8 +127,8 @@ def _explain_standing(
         per = "/s" if kind is Governor.SPEED else "/s2"
         bound = f"{robot.axes[joint].name} and its {name} limit {joint_value(robot, joint, value, per)}"
     q = timed.curve.q[knot]
-    _, jacobian = kinematics.difference(q, kinematics.target(*kinematics.tool_pose(q)))
-    sigma = float(scaled_singular_values(jacobian[:, around.free], robot.reach)[-1])
+    _, jacobian = kinematics.here(q)
+    sigma = float(scaled_singular_values(jacobian[:, around.free], kinematics.row_scale)[-1])
     way = f"{float(clock.s[knot]) * scale:.6g}"
     return report(
         "IRL524",
@@ -159,15 +159,14 @@ def _way_unit(path: PosePath) -> tuple[str, float]:
     return ("deg", float(np.degrees(1.0))) if path.is_pure_turn else ("mm", 1000.0)
 
 
-def _missing(twist: Array, goal: Nearest | None) -> str:
+def _missing(left: Sizes, goal: Nearest | None) -> str:
     if goal is not None and (goal.distance > _AT_BOUND or goal.angle > _AT_BOUND):
         return (
             "the target itself is out of reach: the nearest posture found within the limits leaves "
             f"{_millimetres(goal.distance)} and {_degrees(goal.angle)}"
         )
-    distance, angle = (float(np.linalg.norm(part)) for part in (twist[:3], twist[3:]))
     return (
-        f"at this tick {_millimetres(distance)} and {_degrees(angle)} are missing; "
+        f"at this tick {_millimetres(left.distance)} and {_degrees(left.angle)} are missing; "
         "the target itself can be reached in some posture"
     )
 
@@ -210,7 +209,7 @@ def _limit(joint: int, source: BoundSource, upper: bool, around: Surroundings) -
     per = {"speed": "/s", "acceleration": "/s2"}.get(kind, "")
     value = around.limits.pair(kind)[1 if upper else 0][joint]
     asked = around.asked_by.get(LimitKind(kind.upper()))
-    origin = f" (narrowed in line {asked.line})" if asked is not None else ""
+    origin = f" ({asked})" if asked is not None else ""
     words = joint_value(around.kinematics.description, joint, value, per)
     return f"{side} {_LIMIT_NAMES[source]} limit {words}{origin}"
 

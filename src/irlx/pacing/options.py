@@ -27,6 +27,14 @@ SwitchBlock = LimitSwitchBlock | FreezeBlock | CyclicBlock | CriterionBlock
 """Blocks that change the options in force."""
 
 
+LIMIT_WORDS = {
+    LimitKind.POSITION: "JOINTLIMIT",
+    LimitKind.SPEED: "JOINTSPEEDLIMIT",
+    LimitKind.ACCELERATION: "JOINTACCELLIMIT",
+}
+"""The program's word for each kind of limit."""
+
+
 @dataclass(frozen=True)
 class Options:
     """State of all switches between two blocks.
@@ -71,10 +79,22 @@ class Options:
 
 @dataclass(frozen=True)
 class LimitsInForce:
-    """The joint limits of one move, and for each kind the clause or switch that narrowed them."""
+    """The joint limits of one move, and for each kind the clause or switch that narrowed them.
+
+    `clauses`: the kinds that a clause of the move narrowed.
+    """
 
     limits: JointLimits
     asked_by: dict[LimitKind, Origin]
+    clauses: frozenset[LimitKind] = frozenset()
+
+    @property
+    def told(self) -> dict[LimitKind, str]:
+        """What narrowed each kind, in the program's words, with its line."""
+        return {
+            kind: f"{'WITH ' if kind in self.clauses else ''}{LIMIT_WORDS[kind]} in line {origin.line}"
+            for kind, origin in self.asked_by.items()
+        }
 
 
 def limits_in_force(
@@ -88,11 +108,13 @@ def limits_in_force(
     for kind, switch in options.limits.items():
         if switch.range is not None:
             asked[kind] = (switch.range, switch.origin)
-    for clause in clauses:
+    of_move = list(clauses)
+    for clause in of_move:
         asked[clause.kind] = (clause.range, clause.origin)
     limits = robot
     for kind, (joint_range, _) in asked.items():
         lower, upper = robot.pair(kind.value.lower())
         narrowed = np.maximum(lower, joint_range.lower), np.minimum(upper, joint_range.upper)
         limits = limits.with_pair(kind.value.lower(), *narrowed)
-    return LimitsInForce(limits, {kind: origin for kind, (_, origin) in asked.items()})
+    origins = {kind: origin for kind, (_, origin) in asked.items()}
+    return LimitsInForce(limits, origins, frozenset(clause.kind for clause in of_move))

@@ -29,6 +29,7 @@ from irlx.motion.plan_joint_line import plan_joint_line
 from irlx.motion.plan_path import PlannedPath, plan_path
 from irlx.motion.whole_ticks import ticks_of_move
 from irlx.pacing.clock import programmed_clock
+from irlx.pacing.conditions import broken_condition, check_can_move, check_conditions
 from irlx.pacing.demand import Demand, DemandModifier
 from irlx.pacing.errors import PacingError
 from irlx.pacing.impossible import (
@@ -60,6 +61,7 @@ from irlx.pacing.switches import check_freeze, check_inside, check_joint_target,
 from irlx.promises import PATH_ORIENTATION, PATH_POSITION
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
+from irlx.robot.task import pose_errors
 from irlx.transform.criteria.combined import Weighted
 from irlx.transform.posture_search import nearest_posture
 from irlx.transform.qp.proxqp import ProxQpSolver
@@ -132,7 +134,7 @@ class Pacer:
         if isinstance(block, LimitSwitchBlock):
             self.warnings += check_limit(block, self._robot, self._setup.limits, self.q, place)
         if isinstance(block, FreezeBlock):
-            check_freeze(block, self._robot, place)
+            check_freeze(block, self._robot, self._setup.kinematics.rows, place)
         if isinstance(block, CriterionBlock) and block.choice is not None:
             from irlx.pacing.criteria import check_criterion
 
@@ -207,7 +209,7 @@ class Pacer:
         motion = PathMotion(plan, self.q, term, dt, self.tick + 1, ticks_of, self._setup.modifiers)
         paced = pace_path(motion, model, self._solver)
         if isinstance(paced, Failure):
-            around = Surroundings(self._setup.kinematics, in_force.limits, free, in_force.asked_by)
+            around = Surroundings(self._setup.kinematics, in_force.limits, free, in_force.told)
             goal = goal_shortfall(around, plan.path.end_rotation, plan.path.end_position, self.q)
             raise PacingError(explain_failure(paced, around, plan, self.tick + 1, goal, place))
         self._warn_of_posture_left(paced.q[-1], posture, block, place)
@@ -241,7 +243,11 @@ class Pacer:
             course = replace(course, via=self._as_pose(course.via))
         if block.reconfiguration is not None:
             posture = self._konf(block.reconfiguration, in_force, place)
-        return posture, replace(block, target=self._as_pose(block.target), course=course)
+        posed = replace(block, target=self._as_pose(block.target), course=course)
+        for target in (posed.target, course.via if course is not None else None):
+            if isinstance(target, PoseTarget):
+                check_can_move(target, self._setup.kinematics, self.q, place)
+        return posture, posed
 
     def _as_pose(self, target: PoseTarget | JointTarget) -> PoseTarget:
         """A target as the pose of the tool."""
@@ -278,6 +284,8 @@ class Pacer:
         self, block: MoveBlock, plan: PlannedPath, term: PostureTerm, paced: PacedPath
     ) -> MotionRows:
         position_error, orientation_error, tool_position, tool_rotation = self._tool(paced.q, paced.demands)
+        if broken_condition(paced.q, self._setup.kinematics) is not None:
+            raise ArithmeticError("a solved tick breaks a constraint: the inverse transform is at fault")
         if position_error.max() > PATH_POSITION or orientation_error.max() > PATH_ORIENTATION:
             raise ArithmeticError("a solved tick lies off the path: the inverse transform is at fault")
         return MotionRows(
@@ -300,16 +308,20 @@ class Pacer:
                 plan.path.turn_rate,
                 paced.planned,
                 paced.slowings,
+                self.options.free_joints(self.q.size),
             ),
         )
 
     def _tool(self, q: Array, asked: Sequence[Demand]) -> tuple[Array, Array, Array, Array]:
         """Tool poses of rows and their distance (m) and angle (rad) from the demands."""
-        rotation, position = self._setup.kinematics.tool_poses(q)
-        wanted_position = np.array([demand.position for demand in asked])
-        wanted_rotation = np.array([demand.rotation for demand in asked])
-        apart = Rotation.from_matrix(np.swapaxes(wanted_rotation, 1, 2) @ rotation)
-        return np.linalg.norm(position - wanted_position, axis=1), apart.magnitude(), position, rotation
+        kinematics = self._setup.kinematics
+        rotation, position = kinematics.tool_poses(q)
+        wanted = (
+            np.array([demand.rotation for demand in asked]),
+            np.array([demand.position for demand in asked]),
+        )
+        distance, angle = pose_errors(kinematics.task, wanted, (rotation, position))
+        return distance, angle, position, rotation
 
     # ---- PTP
 
@@ -333,6 +345,7 @@ class Pacer:
             return None
         q = plan.postures(self._setup.dt)
         self._check_rows(q, in_force.limits, place)
+        check_conditions(q, self._setup.kinematics, place)
         rotation, position = self._setup.kinematics.tool_poses(q)
         clock = programmed_clock(plan.law, plan.ticks, self._setup.dt)
         nothing = np.zeros(plan.ticks + 1)
@@ -360,6 +373,7 @@ class Pacer:
         self, target: PoseTarget, konf: JointTarget | None, in_force: LimitsInForce, place: Place
     ) -> Array:
         """The posture of a pose nearest to `konf`, else to that of CYCLICSTART, else to the present one."""
+        check_can_move(target, self._setup.kinematics, self.q, place)
         rotation, _ = self._setup.kinematics.tool_pose(self.q)
         if target.orientation is not None:
             rotation = np.asarray(Rotation.from_quat(target.orientation).as_matrix())

@@ -24,7 +24,7 @@ class PathPart:
     `demands` of the rows (the hold tick has none), posture `term` in force, the programmed `law`;
     `is_turn`: what counts is an angle, of `angle_per_s` rad for each unit of s; `planned`: the motion was
     planned as a whole because ordinary ticks would have broken a bound; `slowings`: the stretches that took
-    longer than programmed.
+    longer than programmed; `free` (n,): the joints that were not frozen.
     """
 
     demands: tuple[Demand, ...]
@@ -34,6 +34,7 @@ class PathPart:
     angle_per_s: float
     planned: bool
     slowings: tuple[Slowing, ...]
+    free: NDArray[np.bool_]
 
 
 @dataclass(frozen=True)

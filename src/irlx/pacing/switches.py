@@ -9,20 +9,13 @@ from irlx.blocks import FreezeBlock, JointRange, LimitClause, LimitKind, LimitSw
 from irlx.diagnostics import Diagnostic, Place, report
 from irlx.pacing.errors import PacingError
 from irlx.pacing.impossible import joint_value
+from irlx.pacing.options import LIMIT_WORDS
 from irlx.robot.description import RobotDescription
 from irlx.robot.limits import JointLimits
 
 Array = NDArray[np.float64]
 
-TASK_ROWS = 6
-"""Coordinates of the tool pose that every move asks for."""
-
 _PER = {LimitKind.POSITION: "", LimitKind.SPEED: "/s", LimitKind.ACCELERATION: "/s2"}
-_WORDS = {
-    LimitKind.POSITION: "JOINTLIMIT",
-    LimitKind.SPEED: "JOINTSPEEDLIMIT",
-    LimitKind.ACCELERATION: "JOINTACCELLIMIT",
-}
 
 
 def check_limit(
@@ -71,7 +64,9 @@ def _range_errors(
             moving.append(words)
     found = [("IRL340", crossed), ("IRL342", moving)]
     return [
-        report(code, place, word=_WORDS[kind], joints=", ".join(joints)) for code, joints in found if joints
+        report(code, place, word=LIMIT_WORDS[kind], joints=", ".join(joints))
+        for code, joints in found
+        if joints
     ]
 
 
@@ -101,18 +96,21 @@ def _wider(
     if not np.any(wider):
         return []
     joints = ", ".join(robot.axes[joint].name for joint in np.flatnonzero(wider))
-    return [report("IRL341", place, word=_WORDS[kind], joints=joints)]
+    return [report("IRL341", place, word=LIMIT_WORDS[kind], joints=joints)]
 
 
-def check_freeze(block: FreezeBlock, robot: RobotDescription, place: Place) -> None:
-    """Raise PacingError: IRL346 for a joint the robot does not have, IRL347 for too many joints."""
+def check_freeze(block: FreezeBlock, robot: RobotDescription, rows: int, place: Place) -> None:
+    """Raise PacingError: IRL346 for a joint the robot does not have, IRL347 for too many joints.
+
+    `rows`: equations that every tick has to meet, those of the tool pose and of constraints.
+    """
     joints = len(robot.axes)
     unknown = [number for number in block.joints if not 1 <= number <= joints]
     if unknown:
         raise PacingError(report("IRL346", place, number=unknown[0], joints=joints))
-    frozen, spare = len(set(block.joints)), joints - TASK_ROWS
+    frozen, spare = len(set(block.joints)), joints - rows
     if frozen > spare:
-        raise PacingError(report("IRL347", place, frozen=frozen, joints=joints, spare=spare))
+        raise PacingError(report("IRL347", place, frozen=frozen, joints=joints, spare=spare, rows=rows))
 
 
 def check_joint_target(q: Array, robot: RobotDescription, limits: JointLimits, place: Place) -> None:

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from irlx.pacing.demand import Demand
 from irlx.transform.criteria.criterion import Criterion
 from irlx.transform.step_bounds import StepBounds, StepLimiter
-from irlx.transform.tick import TickProblem, TickSolution, TickSolver
+from irlx.transform.tick import TickSolution, TickSolver
+from irlx.transform.tick_problem import TickProblem
 
 Array = NDArray[np.float64]
 

@@ -15,6 +15,7 @@ from irlx.diagnostics import Diagnostic
 from irlx.pacing.rows import MotionRows
 from irlx.promises import PATH_POSITION
 from irlx.report.events import Slowed, limit_events, slowed_events
+from irlx.report.returns import returns
 from irlx.report.run import Run
 from irlx.report.summary import LimitUse, Summary, closure, limit_uses
 from irlx.robot.limits import JointLimits
@@ -131,6 +132,7 @@ class Recording:
             planned=sum(segment.planned for segment in self._segments),
             closure=closure(q, tool, names, PATH_POSITION),
             iterations_per_tick=iterations / max(len(q) - 1, 1),
+            returns=returns(records, q, tool, block, active, names),
         )
         return Run(stream, (*events, *slowed), summary, diagnostics)
 

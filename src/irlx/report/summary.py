@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.report.events import LimitActive, Slowed
+from irlx.report.returns import Return
 from irlx.robot.limits import JointLimits
 
 Array = NDArray[np.float64]
@@ -42,7 +43,8 @@ class Summary:
     whole because ordinary ticks would have broken a bound (their postures differ from the ordinary ones
     from the start of the move). `limit_use` holds, for each kind of limit the robot has, the joint that
     came nearest to its bound (for positions: the bound on that side of the middle of its range).
-    `closure` is None where the tool does not end where it began.
+    `closure` is None where the tool does not end where it began; `returns` are the moves that ended at the
+    tool pose of a CYCLICSTART.
     """
 
     program: str
@@ -58,12 +60,14 @@ class Summary:
     planned: int
     closure: Closure | None
     iterations_per_tick: float
+    returns: tuple[Return, ...] = ()
 
     def to_plain(self) -> dict[str, object]:
         """The summary as JSON-able data."""
         plain = asdict(self)
         plain["active"] = [event.to_plain() for event in self.active]
         plain["slowed"] = [event.to_plain() for event in self.slowed]
+        plain["returns"] = [found.to_plain() for found in self.returns]
         return plain
 
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import degrees
 
+from irlx.promises import CLOSURE
 from irlx.report.events import LimitActive, Slowed
+from irlx.report.returns import Return
 from irlx.report.summary import LimitUse, Summary
 from irlx.verifier import Report
 from irlx.verifier.findings.table import printable
@@ -41,6 +43,7 @@ def summary_text(summary: Summary, joint_units: Sequence[str], joint_names: Sequ
         difference = _value(summary.closure.difference, units[summary.closure.joint])
         words = f"the postures differ by {difference} at most ({summary.closure.joint})"
         lines.append(_line("closure", f"the tool ends where it began; {words}"))
+    lines += [_line("cyclic", words) for words in _returns(summary.returns, joint_units, joint_names)]
     return "\n".join(lines)
 
 
@@ -92,6 +95,25 @@ def _slowing(event: Slowed, units: dict[str, str]) -> str:
         f"{achieved} of {requested} {unit}/s "
         f"at {event.way * scale:.4g} of {event.length * scale:.4g} {unit}{why}"
     )
+
+
+def _returns(found: Sequence[Return], units: Sequence[str], names: Sequence[str]) -> list[str]:
+    """What closed, in one line; for each return that did not the joints that are off and what held them."""
+    lines = []
+    closed = [one for one in found if one.closed]
+    if closed:
+        times = "once" if len(closed) == 1 else f"{len(closed)} times"
+        worst = max(one.largest for one in closed)
+        lines.append(f"back in the posture of CYCLICSTART {times}, to {worst:.2g} rad|m")
+    open_ones = [one for one in found if not one.closed]
+    for one in open_ones[:_MOST_SPANS]:
+        off = sorted(zip(one.left, names, units, strict=True), key=lambda joint: -abs(joint[0]))
+        words = ", ".join(f"{name} {_value(left, unit)}" for left, name, unit in off if abs(left) > CLOSURE)
+        lines.append(
+            f"line {one.line}: not back in the posture of line {one.since}: {words}; held by {one.held}"
+        )
+    others = len(open_ones) - _MOST_SPANS
+    return [*lines, f"and {others} more returns that did not close"] if others > 0 else lines
 
 
 def _active(events: Sequence[LimitActive]) -> list[str]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import degrees
 
-from irlx.pacing.explanation import JointTick, PathTick, TickExplanation
+from irlx.pacing.explanation import JointTick, PathTick, QuadraticTick, TickExplanation
 
 _NAMED = 14
 
@@ -26,6 +27,8 @@ def tick_text(found: TickExplanation) -> str:
     width = max(len(joint.name) for joint in found.joints)
     lines.append(f"{'joint':<{width}}  {'value':>12}  {'step':>12}  {'from':>12}  {'':<12}  {'to':>12}  ")
     lines += [_joint_line(joint, width) for joint in found.joints]
+    if found.problem is not None:
+        lines += _problem_lines(found.problem)
     return "\n".join(lines)
 
 
@@ -45,6 +48,28 @@ def _path_lines(path: PathTick) -> list[str]:
         _line("", f"position {x:.6g} {y:.6g} {z:.6g} mm, orientation (x y z w) {quaternion}"),
         _line("", f"twist {linear} mm/s, {angular} deg/s"),
     ]
+
+
+def _problem_lines(problem: QuadraticTick) -> list[str]:
+    """The quadratic problem as a table: a column a joint, lines for g, H and the rows of J with their e."""
+    size = f"{len(problem.joints)} joints, {len(problem.rows)} rows, {problem.unknowns} unknowns when compact"
+    width = max(len(name) for name in (*problem.rows, "gradient"))
+    column = max(10, *(len(name) for name in problem.joints))
+
+    def line(label: str, values: Iterable[str], last: str = "") -> str:
+        return f"{label:<{width}}  {' '.join(f'{value:>{column}}' for value in values)}  {last}".rstrip()
+
+    def numbers(values: Iterable[object]) -> list[str]:
+        return [f"{value:.4g}" for value in values]
+
+    lines = [f"problem: min g'd + 1/2 d'Hd, J d = e, from <= d <= to; {size}; rad and m"]
+    lines.append(line("", problem.joints, "e"))
+    lines.append(line("gradient", numbers(problem.gradient)))
+    for row in problem.hessian if isinstance(problem.hessian[0], tuple) else [problem.hessian]:
+        lines.append(line("hessian", numbers(row if isinstance(row, tuple) else (row,))))
+    for name, row, left in zip(problem.rows, problem.jacobian, problem.left, strict=True):
+        lines.append(line(name, numbers(row), f"{left:.4g}"))
+    return lines
 
 
 def _joint_line(joint: JointTick, width: int) -> str:

@@ -12,6 +12,9 @@ from math import inf
 
 Vector3 = tuple[float, float, float]
 
+COORDINATES = ("x", "y", "z", "rx", "ry", "rz")
+"""Coordinates of a tool pose, in the tool frame: displacements along its axes, turns about them."""
+
 
 class JointKind(str, Enum):
     """How a joint moves; CONTINUOUS is a revolute joint without position limits."""
@@ -76,6 +79,7 @@ class RobotDescription:
     joints: tuple[Joint, ...]
     inertials: Mapping[str, Inertial] = field(default_factory=dict)
     locked: Mapping[str, float] = field(default_factory=dict)
+    coordinates: tuple[str, ...] = COORDINATES
 
     @cached_property
     def chain(self) -> tuple[Joint, ...]:
@@ -111,11 +115,14 @@ class RobotDescription:
 
     @cached_property
     def fingerprint(self) -> str:
-        """SHA-256 (hex) of the chain's geometry: two robots that move alike have the same one."""
+        """SHA-256 (hex) of the chain's geometry and task: two robots that move alike have the same one."""
         chain = [
             {**asdict(joint), "lower": None, "upper": None, "speed": None, "kind": joint.kind.value}
             for joint in self.chain
         ]
         locked = {joint.name: self.locked[joint.name] for joint in self.chain if joint.name in self.locked}
-        text = json.dumps({"tip": self.tip, "chain": chain, "locked": locked}, sort_keys=True)
+        told: dict[str, object] = {"tip": self.tip, "chain": chain, "locked": locked}
+        if self.coordinates != COORDINATES:
+            told["task"] = self.coordinates
+        text = json.dumps(told, sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()

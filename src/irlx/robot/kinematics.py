@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import suppress
-from typing import Any
+from functools import cached_property
+from typing import Any, NamedTuple
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from irlx.robot.description import Inertial, Joint, JointKind, RobotDescription
+from irlx.robot.description import COORDINATES, Inertial, Joint, JointKind, RobotDescription
+from irlx.robot.equality import Constraint
+from irlx.robot.task import Task, partial_difference
 
 Array = NDArray[np.float64]
 
+_POSTURES = 4
+_STILL = 1e-9
 _LOCAL = pin.ReferenceFrame.LOCAL
 _ALIGNED = {
     (JointKind.REVOLUTE, (1.0, 0.0, 0.0)): pin.JointModelRX,
@@ -58,16 +64,27 @@ def _inertia(inertial: Inertial) -> pin.Inertia:
     return placement(inertial.xyz, inertial.rpy).act(about_centre)
 
 
+class Sizes(NamedTuple):
+    """What is left of a demand: a distance (m), an angle (rad), and the largest broken condition."""
+
+    distance: float
+    angle: float
+    condition: float
+
+
 class Kinematics:
-    """Forward kinematics and Jacobian of the tool frame of one robot.
+    """Forward kinematics and Jacobian of the tool frame of one robot, and the conditions between its joints.
 
     Joint vectors q have shape (n,), rad or m, in the order of `RobotDescription.axes`. Twists are
-    (linear m, angular rad) in the tool frame. Not safe for use by several threads at once: results
+    (linear m, angular rad) in the tool frame. What a tick has to meet are m rows: the coordinates of the
+    robot's task, then those of the constraints. Not safe for use by several threads at once: results
     of one call are kept in buffers of the object.
     """
 
-    def __init__(self, description: RobotDescription) -> None:
+    def __init__(self, description: RobotDescription, constraints: Sequence[Constraint] = ()) -> None:
         self.description = description
+        self.constraints = tuple(constraints)
+        self.task = Task(description.coordinates)
         self.model = pin.Model()
         self.model.name = description.name
         self._axis_names = set(description.joint_names)
@@ -78,6 +95,16 @@ class Kinematics:
         self._add_link(description.root, 0, pin.SE3.Identity())
         self.data = self.model.createData()
         self.joints = len(description.axes)
+        self._plain = self.task.is_whole and not self.constraints
+        conditions = sum(len(item.residual(np.zeros(self.joints))) for item in self.constraints)
+        self.rows = self.task.size + conditions
+        scale = np.ones(self.rows)
+        scale[: self.task.linear] /= description.reach
+        self.row_scale = scale
+
+    def constrained(self, constraints: Sequence[Constraint]) -> Kinematics:
+        """The same robot with conditions between its joints."""
+        return Kinematics(self.description, constraints)
 
     def _add_link(self, link: str, parent: int, in_parent: pin.SE3) -> None:
         """Add a link, welded to Pinocchio joint `parent` at `in_parent`, and all that hangs on it."""
@@ -115,11 +142,18 @@ class Kinematics:
         return rotation, position
 
     def difference(self, q: Array, target: pin.SE3) -> tuple[Array, Array]:
-        """Twist that leads the tool from its pose at q to `target`, and the Jacobian of the tool.
+        """What leads from posture q to a demand, and its matrix: shapes (m,) and (m, n).
 
-        Returns log6(T(q)^-1 T_target), shape (6,), and J(q), shape (6, n), both in the tool frame:
-        a joint step d moves the tool by the twist J d to first order.
+        For a whole task without constraints log6(T(q)^-1 T_target) and the Jacobian of the tool, both in the
+        tool frame: a joint step d moves the tool by the twist J d to first order. Else the coordinates
+        of `partial_difference`, then -Phi(q) and dPhi/dq of each constraint.
         """
+        if self._plain:
+            return self.tool_difference(q, target)
+        return self._rows(q, target, exact=False)
+
+    def tool_difference(self, q: Array, target: pin.SE3) -> tuple[Array, Array]:
+        """log6(T(q)^-1 T_target), shape (6,), and the tool Jacobian, shape (6, n), whatever the task."""
         pin.computeJointJacobians(self.model, self.data, q)
         pose = pin.updateFramePlacement(self.model, self.data, self._tip_frame)
         twist = pin.log6(pose.actInv(target)).vector
@@ -127,13 +161,58 @@ class Kinematics:
         return twist, jacobian
 
     def difference_derivative(self, q: Array, target: pin.SE3) -> tuple[Array, Array]:
-        """The twist of `difference` and its exact derivative by q, shape (6, n), also far from the target.
+        """What `difference` gives first and its exact derivative by q, (m, n), also far from the target.
 
         With E = T(q)^-1 T_target a step d turns E into exp(-J d) E, so d log6(E) = -Jlog6(E) Ad(E^-1) J d.
         """
-        twist, jacobian = self.difference(q, target)
-        apart = self.data.oMf[self._tip_frame].actInv(target)
-        return twist, -pin.Jlog6(apart) @ apart.inverse().action @ jacobian
+        left, matrix = self._rows(q, target, exact=True)
+        return left, -matrix
+
+    def _rows(self, q: Array, target: pin.SE3, exact: bool) -> tuple[Array, Array]:
+        left, matrix = self.tool_difference(q, target)
+        pose = self.data.oMf[self._tip_frame]
+        if not self.task.is_whole:
+            left, matrix = partial_difference(self.task, pose, matrix, target)
+        elif exact:
+            apart = pose.actInv(target)
+            matrix = pin.Jlog6(apart) @ apart.inverse().action @ matrix
+        if not self.constraints:
+            return left, matrix
+        residuals = [-item.residual(q) for item in self.constraints]
+        derivatives = [item.derivative(q) for item in self.constraints]
+        return np.concatenate([left, *residuals]), np.vstack([matrix, *derivatives])
+
+    def sizes(self, left: Array) -> Sizes:
+        """What is left (m,), as `difference` gives it first, in three numbers."""
+        linear, size = self.task.linear, self.task.size
+        condition = float(np.max(np.abs(left[size:]), initial=0.0))
+        distance, angle = (float(np.linalg.norm(part)) for part in (left[:linear], left[linear:size]))
+        return Sizes(distance, angle, condition)
+
+    @property
+    def row_names(self) -> tuple[str, ...]:
+        """What each of the m rows is: a coordinate of the tool pose, or a constraint by its name."""
+        sizes = [len(item.residual(np.zeros(self.joints))) for item in self.constraints]
+        names = (
+            name for item, size in zip(self.constraints, sizes, strict=True) for name in [item.name] * size
+        )
+        return (*self.task.coordinates, *names)
+
+    @cached_property
+    def immovable(self) -> Task:
+        """Coordinates that the task leaves out and no joint moves either, as a planar arm's height."""
+        moved = np.zeros(6)
+        for k in range(_POSTURES):
+            # Joint values without any pattern: what is zero at all of them is so everywhere.
+            q = np.sin(np.arange(1.0, self.joints + 1.0) * (1.7 + k))
+            jacobian = self.tool_difference(q, pin.SE3.Identity())[1]
+            moved = np.maximum(moved, np.max(np.abs(jacobian), axis=1, initial=0.0))
+        still = moved <= _STILL * max(1.0, self.description.reach)
+        return Task(tuple(name for name in self.task.left_out if still[COORDINATES.index(name)]))
+
+    def here(self, q: Array) -> tuple[Array, Array]:
+        """`difference` to the tool's own pose at q: constraints alone may be left."""
+        return self.difference(q, self.target(*self.tool_pose(q)))
 
     def target(self, rotation: Array, position: Array) -> pin.SE3:
         """Pose of rotation (3, 3) and position (3,) m as Pinocchio keeps it."""

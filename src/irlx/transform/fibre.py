@@ -99,9 +99,8 @@ class Fibre:
         return count > rank or rank == self.rank(q, self.free)
 
     def _rows(self, q: Array, jacobian: Array, movable: NDArray[np.bool_]) -> Array:
-        """P (rank, 6): combinations of the rows of J (6, n) that say once each what the joints move."""
-        reach = self.kinematics.description.reach
-        return independent_rows(jacobian[:, movable], reach, self.rank(q, movable))
+        """P (rank, m): combinations of the rows of J (m, n) that say once each what the joints move."""
+        return independent_rows(jacobian[:, movable], self.kinematics.row_scale, self.rank(q, movable))
 
     def distance(self, q: Array) -> float:
         """1/2 (q - k)' W (q - k) of the free joints."""

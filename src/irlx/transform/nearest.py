@@ -8,7 +8,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from irlx.robot.kinematics import Kinematics
+from irlx.robot.kinematics import Kinematics, Sizes
 from irlx.transform.compact import StepProblem
 from irlx.transform.metric import rows_over
 
@@ -20,44 +20,42 @@ _FINE = 1e-15
 _EVALUATIONS = 100
 
 
-def scaled_singular_values(jacobian: Array, reach: float) -> Array:
-    """Singular values of a tool Jacobian (6, n), position rows divided by the robot's reach (m)."""
-    scaled = jacobian.copy()
-    scaled[:3] /= reach
-    return np.asarray(np.linalg.svd(scaled, compute_uv=False))
+def scaled_singular_values(jacobian: Array, row_scale: Array) -> Array:
+    """Singular values of a task's matrix (m, n), its rows times `Kinematics.row_scale` (m,): one unit."""
+    return np.asarray(np.linalg.svd(jacobian * row_scale[:, None], compute_uv=False))
 
 
-def damped_step(problem: StepProblem, reach: float) -> Array:
-    """Step of a posture near a singular one: d = H^-1 J' (J H^-1 J' + c I)^-1 e, rows scaled by reach.
+def damped_step(problem: StepProblem, row_scale: Array) -> Array:
+    """Step of a posture near a singular one: d = H^-1 J' (J H^-1 J' + c I)^-1 e, rows scaled to one unit.
 
     It shapes an iterate only; what it leaves of the pose is judged like any other residual.
     """
-    row_scale = np.array([1.0 / reach] * 3 + [1.0] * 3)
     rows = problem.jacobian * row_scale[:, None]
     scaled = rows_over(rows, problem.hessian)
     gram = scaled @ rows.T
     # Without any joint that moves the Gram matrix is zero, and so is the step.
     damping = _DAMPING**2 * float(np.trace(gram)) or 1.0
-    k = np.linalg.solve(gram + damping * np.eye(6), problem.twist * row_scale)
+    k = np.linalg.solve(gram + damping * np.eye(len(row_scale)), problem.twist * row_scale)
     return np.asarray(scaled.T @ k)
 
 
 @dataclass(frozen=True)
 class Nearest:
-    """Posture q (n,) that comes nearest to a pose, and the twist (6,) that is left."""
+    """Posture q (n,) that comes nearest to a demand, and what is left (m,) of its rows."""
 
     q: Array
     twist: Array
+    sizes: Sizes
 
     @property
     def distance(self) -> float:
         """Distance left, m."""
-        return float(np.linalg.norm(self.twist[:3]))
+        return self.sizes.distance
 
     @property
     def angle(self) -> float:
         """Angle left, rad."""
-        return float(np.linalg.norm(self.twist[3:]))
+        return self.sizes.angle
 
 
 def nearest_in_bounds(
@@ -65,12 +63,12 @@ def nearest_in_bounds(
 ) -> Nearest:
     """Posture with lower <= q <= upper (n,) that comes nearest to a pose, searched from q.
 
-    Frozen joints stay. Least squares of log6 of the pose difference, its translation divided by the
-    robot's reach. Used where Newton steps find nothing: its residual says how far the robot falls short.
+    Frozen joints stay. Least squares of what is left, displacements divided by the robot's reach. Used where
+    Newton steps find nothing: its residual says how far the robot falls short.
     """
     from scipy.optimize import least_squares
 
-    scale = np.array([1.0 / kinematics.description.reach] * 3 + [1.0] * 3)
+    scale = kinematics.row_scale
     movable = free & (upper - lower > _NO_ROOM)
 
     def posture(x: Array) -> Array:
@@ -86,8 +84,12 @@ def nearest_in_bounds(
         _, jacobian = kinematics.difference_derivative(posture(x), target)
         return np.asarray(scale[:, None] * jacobian[:, movable])
 
+    def found_at(q: Array) -> Nearest:
+        left = kinematics.difference(q, target)[0]
+        return Nearest(q, left, kinematics.sizes(left))
+
     if not np.any(movable):
-        return Nearest(q, kinematics.difference(q, target)[0])
+        return found_at(q)
     low, high = lower[movable], upper[movable]
     start = np.clip(q[movable], low, high)
     found = least_squares(
@@ -100,5 +102,4 @@ def nearest_in_bounds(
         gtol=_FINE,
         max_nfev=_EVALUATIONS,
     )
-    nearest = posture(found.x)
-    return Nearest(nearest, kinematics.difference(nearest, target)[0])
+    return found_at(posture(found.x))

@@ -308,7 +308,7 @@ def _why(fibre: Fibre, q: Array, tangent: Tangent) -> FlowEnd:
     if tangent.projected <= max(ALMOST_AT_REST, 1e3 * _ROUNDING * _steepness(tangent)):
         return FlowEnd.NEAREST
     columns = tangent.jacobian[:, tangent.movable]
-    values = scaled_singular_values(columns, fibre.kinematics.description.reach)
+    values = scaled_singular_values(columns, fibre.kinematics.row_scale)
     least = values[fibre.rank(q, tangent.movable) - 1]
     return FlowEnd.SINGULAR if least < SINGULAR_RATIO * values[0] else FlowEnd.STALLED
 

@@ -14,7 +14,8 @@ from irlx.transform.criteria.posture import Posture
 from irlx.transform.nearest import Nearest, nearest_in_bounds
 from irlx.transform.qp.solver import QpSolver
 from irlx.transform.step_bounds import BoundSource, StepBounds
-from irlx.transform.tick import TickProblem, TickSolver
+from irlx.transform.tick import TickSolver
+from irlx.transform.tick_problem import TickProblem
 
 Array = NDArray[np.float64]
 

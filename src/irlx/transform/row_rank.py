@@ -37,22 +37,20 @@ def usual_rank(kinematics: Kinematics, q: Array, moving: NDArray[np.bool_]) -> i
         posture = q + wide * rng.uniform(-1.0, 1.0, q.size)
         target = kinematics.target(*kinematics.tool_pose(posture))
         columns = kinematics.difference(posture, target)[1][:, moving]
-        values = scaled_singular_values(columns, reach)
+        values = scaled_singular_values(columns, kinematics.row_scale)
         rank = max(rank, int(np.count_nonzero(values > _ROUNDING * values[0])))
     return rank
 
 
-def independent_rows(jacobian: Array, reach: float, rank: int) -> Array:
+def independent_rows(jacobian: Array, row_scale: Array, rank: int) -> Array:
     """P (..., rank, m) so that P J has the row space of J (..., m, n) with as many rows as its usual rank.
 
-    The left singular vectors of the largest singular values, position rows divided by the `reach` (m); the
-    unit matrix where no row is too many. What P leaves of a pose error on the way to a pose that can be
+    The left singular vectors of the largest singular values, rows times `Kinematics.row_scale` (m,); the unit
+    matrix where no row is too many. What P leaves of a pose error on the way to a pose that can be
     reached is of second order in it, so that Newton's steps of P J d = P e converge as ever.
     """
     m = jacobian.shape[-2]
     if rank >= m:
         return np.broadcast_to(np.eye(m), (*jacobian.shape[:-2], m, m))
-    scale = np.ones(m)
-    scale[:3] = 1.0 / reach
-    left = np.linalg.svd(scale[:, None] * jacobian, full_matrices=False)[0][..., :rank]
-    return np.asarray(np.swapaxes(left, -1, -2) * scale)
+    left = np.linalg.svd(row_scale[:, None] * jacobian, full_matrices=False)[0][..., :rank]
+    return np.asarray(np.swapaxes(left, -1, -2) * row_scale)

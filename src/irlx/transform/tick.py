@@ -7,15 +7,13 @@ from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
-import pinocchio as pin
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dposv
 
 from irlx.robot.kinematics import Kinematics
 from irlx.transform.compact import Step, StepProblem, bounded_step, free_step, within
-from irlx.transform.criteria.criterion import Criterion
 from irlx.transform.criterion_pace import STRAIGHT, CriterionPace
-from irlx.transform.metric import reduced, solved
+from irlx.transform.metric import solved
 from irlx.transform.nearest import Nearest, damped_step, nearest_in_bounds, scaled_singular_values
 from irlx.transform.precision import (
     AT_BOUND,
@@ -27,7 +25,7 @@ from irlx.transform.precision import (
 )
 from irlx.transform.qp.solver import QpSolver
 from irlx.transform.settling import Settling
-from irlx.transform.step_bounds import StepBounds
+from irlx.transform.tick_problem import TickProblem, build_tick
 
 Array = NDArray[np.float64]
 
@@ -43,25 +41,11 @@ class TickStatus(Enum):
     NOT_CONVERGED = "the pose is not met"
 
 
-class TickProblem(NamedTuple):
-    """All that one tick depends on.
-
-    `target`: demanded tool pose in the world; `q` (n,): posture at the start of the tick; `bounds`
-    of the step; `criterion` in force; `free` (n,) bool: joints that are not frozen.
-    """
-
-    target: pin.SE3
-    q: Array
-    bounds: StepBounds
-    criterion: Criterion
-    free: NDArray[np.bool_]
-
-
 class TickSolution(NamedTuple):
     """Posture q (n,) at the end of a tick, and how it was found.
 
-    `active` is +1 / -1 for joints held at the upper / lower bound of their step. `twist` (6,) is
-    what is left to the demanded pose: before the last step where the tick is solved, else at q, the
+    `active` is +1 / -1 for joints held at the upper / lower bound of their step. `twist` (m,) is
+    what is left of the demand: before the last step where the tick is solved, else at q, the
     posture within the bounds that comes nearest.
     """
 
@@ -83,7 +67,7 @@ class TickSolver:
     def __init__(self, kinematics: Kinematics, qp: QpSolver, max_iterations: int = MAX_ITERATIONS) -> None:
         self.kinematics = kinematics
         self._max_iterations = max_iterations
-        self.reach = kinematics.description.reach
+        self._linear = kinematics.task.linear
         self._qp = qp
 
     def solve(self, problem: TickProblem, seed: Array | None = None, thorough: bool = True) -> TickSolution:
@@ -104,7 +88,7 @@ class TickSolver:
             return found
         if problem.bounds.conflicts.size:
             nothing = np.zeros(problem.q.size, dtype=np.int8)
-            return TickSolution(TickStatus.BOUNDS_CONFLICT, problem.q, nothing, np.zeros(6), 0)
+            return TickSolution(TickStatus.BOUNDS_CONFLICT, problem.q, nothing, self._no_rows(), 0)
         first = self._newton(problem, found)
         if not isinstance(first, TickSolution) and seed is not None:
             # A seed must not decide whether there is a step.
@@ -113,10 +97,10 @@ class TickSolver:
             return first
         if not thorough:
             nothing = np.zeros(problem.q.size, dtype=np.int8)
-            return TickSolution(first, problem.q, nothing, np.zeros(6), self._max_iterations)
+            return TickSolution(first, problem.q, nothing, self._no_rows(), self._max_iterations)
         # Bounds can close the way that the first linear step sees and leave another one open.
         nearest = self._nearest(problem)
-        if _met(nearest.twist):
+        if self._met(nearest.twist):
             second = self._newton(problem, nearest.q - problem.q)
             if isinstance(second, TickSolution):
                 return second
@@ -156,7 +140,7 @@ class TickSolver:
             if failed or not size <= MAX_NEWTON_STEP:
                 return whole
             before = settling.before
-            done = settling.after(size, sqrt(pull.dot(pull)), _met(twist))
+            done = settling.after(size, sqrt(pull.dot(pull)), self._met(twist))
             taken = d
             # Steps that shrink this fast find the path straight; the last step is a full one.
             if not done and size > STRAIGHT * before:
@@ -189,7 +173,7 @@ class TickSolver:
             if step is None:
                 return TickStatus.NO_STEP
             pull = solved(step_problem.hessian, step_problem.gradient)
-            done = settling.after(_length(step.d), _length(pull), _met(step_problem.twist))
+            done = settling.after(_length(step.d), _length(pull), self._met(step_problem.twist))
             done = done or (iteration == self._max_iterations and settling.calm > 0)
             d = step.d if done else pace.shape(step_problem, step.d)
             d = d * min(1.0, MAX_NEWTON_STEP / max(float(np.max(np.abs(d), initial=0.0)), 1e-300))
@@ -208,24 +192,15 @@ class TickSolver:
 
         Returns the problem and its minimiser without bounds (damped near a singular posture).
         """
-        free = problem.free
-        twist, jacobian = self.kinematics.difference(problem.q + whole, problem.target)
-        step_problem = StepProblem(
-            jacobian[:, free],
-            twist,
-            problem.criterion.gradient(problem.q, whole)[free],
-            reduced(problem.criterion.hessian(), free),
-            (problem.bounds.lower - whole)[free],
-            (problem.bounds.upper - whole)[free],
-        )
+        step_problem = build_tick(self.kinematics, problem, whole)
         try:
             d_free = free_step(step_problem)
         except np.linalg.LinAlgError:
-            return step_problem, damped_step(step_problem, self.reach)
+            return step_problem, damped_step(step_problem, self.kinematics.row_scale)
         if float(np.max(np.abs(d_free), initial=0.0)) > MAX_NEWTON_STEP:
-            values = scaled_singular_values(step_problem.jacobian, self.reach)
+            values = scaled_singular_values(step_problem.jacobian, self.kinematics.row_scale)
             if values[-1] < SINGULAR_RATIO * values[0]:
-                return step_problem, damped_step(step_problem, self.reach)
+                return step_problem, damped_step(step_problem, self.kinematics.row_scale)
         return step_problem, d_free
 
     def _step(self, problem: StepProblem, d_free: Array) -> Step | None:
@@ -237,6 +212,18 @@ class TickSolver:
         lower, upper = problem.q + problem.bounds.lower, problem.q + problem.bounds.upper
         return nearest_in_bounds(self.kinematics, problem.target, problem.q, lower, upper, problem.free)
 
+    def _met(self, left: Array) -> bool:
+        # Both parts are shorter than the whole. Conditions between joints count like angles.
+        if left.dot(left) <= _SURELY_MET:
+            return True
+        linear = self._linear
+        return (
+            _length(left[:linear]) <= POSITION_TOLERANCE and _length(left[linear:]) <= ORIENTATION_TOLERANCE
+        )
+
+    def _no_rows(self) -> Array:
+        return np.zeros(self.kinematics.rows)
+
     def _unsolved(self, problem: TickProblem, nearest: Nearest, status: TickStatus) -> TickSolution:
         bounds, whole = problem.bounds, nearest.q - problem.q
         at_upper, at_lower = bounds.upper - whole <= AT_BOUND, whole - bounds.lower <= AT_BOUND
@@ -247,10 +234,3 @@ class TickSolver:
 
 def _length(d: Array) -> float:
     return sqrt(d.dot(d))
-
-
-def _met(twist: Array) -> bool:
-    # Both parts are shorter than the whole.
-    if twist.dot(twist) <= _SURELY_MET:
-        return True
-    return _length(twist[:3]) <= POSITION_TOLERANCE and _length(twist[3:]) <= ORIENTATION_TOLERANCE

@@ -18,6 +18,7 @@ from irlx.verifier.evidence import Evidence
 from irlx.verifier.findings.finding import FAILED, NO_CASE, NOT_CHECKED, OK, Check, Subject
 from irlx.verifier.findings.report import Report
 from irlx.verifier.judges.closure import ClosureChecks
+from irlx.verifier.judges.conditions import ConditionChecks
 from irlx.verifier.judges.joint_moves import JointMoveChecks
 from irlx.verifier.judges.limits_kept import LimitChecks, StartCheck
 from irlx.verifier.judges.provenance import RateChecks, Reference, ToolChecks, check_robot, check_robot_limits
@@ -47,6 +48,7 @@ CHECKS = (
     "acceleration limits",
     "stops",
     "frozen joints",
+    "constraints",
     "PTP straight",
     "PTP progress",
     "joint goal",
@@ -69,9 +71,10 @@ CHECKS = (
 
 _ANYWAY = ("written rates", "start", "stops")
 _LIMITS = CHECKS[10:13]
-_BLOCKS = CHECKS[14:18]
-_TOOL = CHECKS[18:20]
-_MOVES = CHECKS[20:]
+_OF_CELL = ("constraints",)
+_BLOCKS = ("frozen joints", "PTP straight", "PTP progress", "joint goal")
+_TOOL = CHECKS[19:21]
+_MOVES = CHECKS[21:]
 
 _HEADER_DAMAGE = ("IRL701", "IRL705", "IRL706")
 
@@ -158,7 +161,8 @@ def _judged(
     """Checks of blocks and rows, the stream being whole enough for them."""
     robot = reference.robot if reference is not None and of_robot.status == OK else None
     start = None if robot is None or reference is None else reference.start
-    evidence = Evidence(outline, robot, start)
+    relations = () if robot is None or reference is None else reference.relations
+    evidence = Evidence(outline, robot, start, relations)
     of_blocks = check_blocks(outline, may_lack_blocks)
     no_blocks = "the check 'blocks' failed" if of_blocks.status == FAILED else of_blocks.detail
     no_robot = of_robot.detail if of_robot.status == NOT_CHECKED else "the check 'robot' failed"
@@ -166,6 +170,7 @@ def _judged(
     groups: list[tuple[tuple[str, ...], str, list[type[RowChecks]]]] = [
         (_ANYWAY, "", [RateChecks, StartCheck, StopChecks]),
         (_LIMITS, no_blocks if of_blocks.status == FAILED else "", [LimitChecks]),
+        (_OF_CELL, no_robot, [ConditionChecks]),
         (_BLOCKS, no_blocks, [FrozenChecks, JointMoveChecks]),
         (_TOOL, no_robot, [ToolChecks]),
         (_MOVES, no_blocks or no_robot, [ToolMoveChecks, ReconfigurationChecks, ClosureChecks]),

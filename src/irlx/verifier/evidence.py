@@ -9,6 +9,7 @@ import numpy as np
 
 from irlx.blocks import JointTarget, PoseTarget
 from irlx.robot.description import RobotDescription
+from irlx.robot.relation import JointRelation
 from irlx.streams.joint_stream import Floats
 from irlx.verifier.findings.tally import Tally
 from irlx.verifier.geometry.forward import forward
@@ -29,12 +30,13 @@ class Evidence:
     """The outline of a stream with what follows from it, computed on first use.
 
     `robot` is None where none is known or where it is not the stream's robot; `start` (n,) is the posture in
-    which its cell has it begin, None where no cell is given.
+    which its cell has it begin, None where no cell is given; `relations` between joints are its cell's.
     """
 
     outline: Outline
     robot: RobotDescription | None
     start: Floats | None = None
+    relations: tuple[JointRelation, ...] = ()
 
     @cached_property
     def moves(self) -> list[MoveRows]:

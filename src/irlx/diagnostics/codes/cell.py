@@ -29,10 +29,25 @@ CELL = (
     error("IRL612", "the robot model {model} cannot be used: {cause}{near}"),
     error(
         "IRL613",
-        "the joints that move the tool frame {tip} are {names}: {found}, but a pose needs at least six",
-        "choose another tip, or unlock joints; robots with fewer axes are for a later version",
+        "the joints that move the tool frame {tip} are {names}: {found}, but the task has {rows} coordinates",
+        "choose another tip, unlock joints, or say in robot.task which coordinates of the pose count",
     ),
     error("IRL614", "the robot '{model}' is in the package example-robot-data, {cause}: {command}"),
+    error(
+        "IRL615",
+        "robot.task leaves out {names}, but joints move the tool that way",
+        "name them in robot.task; coordinates that are left free on purpose are for a later version",
+    ),
+    error(
+        "IRL616",
+        "the start posture breaks the constraint '{name}': the sum is {found}, must be {due}",
+        "give another robot.start, or leave out the value: then it is that of the start",
+    ),
+    error(
+        "IRL617",
+        "no constraint is registered as '{use}'{near}; known are: {known}",
+        "irlx.register it before the run, or name its module with --plugin",
+    ),
     error(
         "IRL620",
         "{joint} starts at {found} {unit}, outside its limits {lower} to {upper} {unit}",

@@ -23,7 +23,7 @@ PACING = (
     error("IRL346", "FREEZESTART names joint {number}; the robot has joints 1 to {joints}"),
     error(
         "IRL347",
-        "{frozen} joints are frozen, but a robot of {joints} joints can spare {spare}: the tool needs 6",
+        "{frozen} joints are frozen, but a robot of {joints} joints can spare {spare}: the tool needs {rows}",
         "freeze fewer joints",
     ),
     warning(
@@ -41,6 +41,11 @@ PACING = (
         "RECONFIGURATION asks for {joint} at {value}, outside its limits {lower} to {upper}; it is led to "
         "the nearest posture inside",
         "choose a value inside the limits, or end the JOINTLIMIT before",
+    ),
+    error(
+        "IRL351",
+        "this move breaks the constraint '{name}' of the cell by {broken} (rad or m)",
+        "PTP goes straight from posture to posture; choose a target that keeps the constraint, or LIN",
     ),
     error(
         "IRL421",
@@ -82,6 +87,11 @@ PACING = (
         "the tool is to turn through the via orientation, but ANGLE {angle} deg does not take it past the "
         "via point at {via} deg",
         "give a larger ANGLE, or leave out CIRC_ORI",
+    ),
+    error(
+        "IRL430",
+        "the target is off where no joint of {robot} moves the tool: {off}, in the tool frame",
+        "give the target the values that the tool has there; the robot's task leaves them out",
     ),
     error("IRL424", "the target puts {joint} at {value}, outside its limits {lower} to {upper}"),
 )

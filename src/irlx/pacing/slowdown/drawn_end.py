@@ -15,7 +15,8 @@ from irlx.pacing.slowdown.reserve import LEAD, rounded_inside
 from irlx.transform.criteria.criterion import Criterion
 from irlx.transform.qp.proxqp import ProxQpSolver
 from irlx.transform.step_bounds import BoundSource, StepBounds
-from irlx.transform.tick import TickProblem, TickSolver
+from irlx.transform.tick import TickSolver
+from irlx.transform.tick_problem import TickProblem
 
 Array = NDArray[np.float64]
 

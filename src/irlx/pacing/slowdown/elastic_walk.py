@@ -27,7 +27,8 @@ from irlx.transform.criteria.criterion import Criterion
 from irlx.transform.qp.dual import DualSolver
 from irlx.transform.qp.proxqp import ProxQpSolver
 from irlx.transform.step_bounds import BoundSource, StepBounds, braking_speed
-from irlx.transform.tick import TickProblem, TickSolution, TickSolver
+from irlx.transform.tick import TickSolution, TickSolver
+from irlx.transform.tick_problem import TickProblem
 
 Array = NDArray[np.float64]
 

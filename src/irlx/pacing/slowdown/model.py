@@ -33,7 +33,7 @@ class Model:
     @property
     def freedom(self) -> int:
         """Joints more than the pose needs: dimension r of the null space."""
-        return int(np.count_nonzero(self.free)) - 6
+        return int(np.count_nonzero(self.free)) - self.kinematics.rows
 
     @property
     def movable(self) -> NDArray[np.bool_]:
@@ -50,9 +50,9 @@ class Model:
         return [target(r, p) for r, p in zip(poses.rotation, poses.position, strict=True)]
 
     def differences(self, q: Array, targets: Sequence[pin.SE3]) -> tuple[Array, Array]:
-        """Twists (N, 6) from the tool at q (N, n) to the targets, tool Jacobians (N, 6, f) of free joints."""
-        twists = np.empty((len(q), 6))
-        jacobians = np.empty((len(q), 6, q.shape[1]))
+        """What is left (N, m) from postures q (N, n) to the targets, matrices (N, m, f) of free joints."""
+        twists = np.empty((len(q), self.kinematics.rows))
+        jacobians = np.empty((len(q), self.kinematics.rows, q.shape[1]))
         difference = self.kinematics.difference
         for k, (row, target) in enumerate(zip(q, targets, strict=True)):
             twists[k], jacobians[k] = difference(row, target)
@@ -75,13 +75,14 @@ class Model:
         if held is not None:
             inverse = np.where(held[:, None, self.free], 0.0, inverse)
         moved = q.copy()
-        twists, jacobians = np.zeros((len(q), 6)), np.zeros((len(q), 6, int(np.sum(self.free))))
-        rank, reach = usual_rank(self.kinematics, q[0], self.free), self.kinematics.description.reach
+        m, free = self.kinematics.rows, int(np.sum(self.free))
+        twists, jacobians = np.zeros((len(q), m)), np.zeros((len(q), m, free))
+        rank = usual_rank(self.kinematics, q[0], self.free)
         for _ in range(rounds):
             twists, jacobians = self.differences(moved, targets)
             asked, rows = twists[:, :, None], jacobians
-            if self.freedom >= 0 and rank < rows.shape[1]:
-                chosen = independent_rows(jacobians, reach, rank)
+            if self.freedom >= 0 and rank < m:
+                chosen = independent_rows(jacobians, self.kinematics.row_scale, rank)
                 asked, rows = chosen @ asked, chosen @ rows
             scaled = rows * inverse
             gram = scaled @ np.swapaxes(rows, 1, 2)
@@ -95,7 +96,7 @@ class Model:
 
 
 class OntoPath(NamedTuple):
-    """Postures q (N, n) brought onto poses; twists (N, 6) and Jacobians (N, 6, f) before the last step.
+    """Postures q (N, n) brought onto poses; twists (N, m) and Jacobians (N, m, f) before the last step.
 
     That step squares the twists.
     """

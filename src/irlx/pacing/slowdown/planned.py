@@ -187,8 +187,8 @@ def _standing(model: Model, timed: TimedCurve, grid: PathGrid) -> int | None:
         return None
     knot = int(np.argmin(np.where(slow, shares, np.inf))) + 1
     q, kinematics = timed.curve.q[knot], model.kinematics
-    _, jacobian = kinematics.difference(q, kinematics.target(*kinematics.tool_pose(q)))
-    values = scaled_singular_values(jacobian[:, model.free], kinematics.description.reach)
+    _, jacobian = kinematics.here(q)
+    values = scaled_singular_values(jacobian[:, model.free], kinematics.row_scale)
     return knot if values[-1] < SINGULAR_SHARE * values[0] else None
 
 

@@ -9,7 +9,7 @@ from irlx.transform.measures.ellipsoid import volume, volume_derivative
 from irlx.transform.measures.inertia import inertia_derivative, inertia_matrix
 from irlx.transform.measures.jacobian_derivative import jacobian_derivative
 from irlx.transform.measures.measure import Array, Measure
-from irlx.transform.measures.scaled_jacobian import scaled_jacobian
+from irlx.transform.measures.scaled_jacobian import of_task, scaled_jacobian
 
 _NO_INERTIA = 1e-14
 """Ratio of the smallest to the largest eigenvalue of the inertia matrix that is rounding alone."""
@@ -37,10 +37,10 @@ class DynamicManipulability(Measure):
             raise ValueError(f"the masses of '{kinematics.description.name}' leave '{joint}' without inertia")
 
     def _response(self, q: Array) -> tuple[Array, Array, Array]:
-        """J, M^-1 and J M^-1."""
+        """J, M^-1, and J M^-1 of the rows of the task."""
         jacobian = scaled_jacobian(self.kinematics, q)
         mobility = np.asarray(np.linalg.inv(inertia_matrix(self.kinematics, q)), dtype=np.float64)
-        return jacobian, mobility, jacobian @ mobility
+        return jacobian, mobility, of_task(self.kinematics, jacobian) @ mobility
 
     def value(self, q: Array) -> float:
         """w."""
@@ -54,6 +54,7 @@ class DynamicManipulability(Measure):
         jacobian, mobility, response = self._response(q)
         by_jacobian = volume_derivative(response) @ mobility
         by_inertia = response.T @ by_jacobian
-        turned = by_jacobian.ravel() @ jacobian_derivative(jacobian).reshape(by_jacobian.size, -1)
+        moved = of_task(self.kinematics, jacobian_derivative(jacobian))
+        turned = by_jacobian.ravel() @ moved.reshape(by_jacobian.size, -1)
         changed = by_inertia.ravel() @ inertia_derivative(self.kinematics, q).reshape(by_inertia.size, -1)
         return np.asarray(turned - changed)

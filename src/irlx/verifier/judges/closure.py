@@ -88,7 +88,7 @@ class ClosureChecks:
                     self._end(int(stretch.rows[-1]), found, goal)
 
     def _watch_positions(self, rows: Rows) -> None:
-        """Keep the first row behind each CYCLICSTART in which a joint met a position limit, which may have led
+        """Keep the first row behind each CYCLICSTART in which a joint met a position limit: that may have led
         the posture away."""
         waiting = self._starts - self._first_held.keys()
         if not waiting:

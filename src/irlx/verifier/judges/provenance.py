@@ -9,6 +9,7 @@ import numpy as np
 from irlx.promises import TOOL_ORIENTATION, TOOL_POSITION, rounding_allowance
 from irlx.robot.description import RobotDescription
 from irlx.robot.limits import JointLimits
+from irlx.robot.relation import JointRelation
 from irlx.streams.joint_stream import Floats, StreamHeader
 from irlx.verifier.evidence import Evidence
 from irlx.verifier.findings.finding import FAILED, NOT_CHECKED, OK, Check
@@ -19,11 +20,12 @@ from irlx.verifier.rows import Rows
 @dataclass(frozen=True)
 class Reference:
     """What a stream is judged by: a robot, and of its cell the robot's own limits and the start posture (n,),
-    rad or m; None where no cell is given."""
+    rad or m; None where no cell is given. `relations` between the joints hold in that cell."""
 
     robot: RobotDescription
     limits: JointLimits | None = None
     start: Floats | None = None
+    relations: tuple[JointRelation, ...] = ()
 
 
 def check_robot(header: StreamHeader, reference: Reference | None) -> Check:

@@ -1,0 +1,60 @@
+"""Checks of what a cell asks of its robot beside the tool pose: its task, and conditions between joints."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from irlx.blocks import PoseTarget
+from irlx.diagnostics import Place, report
+from irlx.pacing.errors import PacingError
+from irlx.promises import CONDITION, PATH_ORIENTATION, PATH_POSITION
+from irlx.robot.equality import Constraint
+from irlx.robot.kinematics import Kinematics
+from irlx.robot.task import partial_difference
+
+Array = NDArray[np.float64]
+
+
+def check_can_move(target: PoseTarget, kinematics: Kinematics, q: Array, place: Place) -> None:
+    """Raise PacingError, IRL430, for a target that is off in a coordinate in which no joint moves the tool.
+
+    The task of a planar arm leaves those coordinates out; that a target differs there would go unseen.
+    """
+    fixed = kinematics.immovable
+    if not fixed.size:
+        return
+    rotation, position = kinematics.tool_pose(q)
+    wanted = rotation
+    if target.orientation is not None:
+        wanted = np.asarray(Rotation.from_quat(target.orientation).as_matrix())
+    pose = kinematics.target(rotation, position)
+    nothing = np.zeros((6, 0))
+    left, _ = partial_difference(fixed, pose, nothing, kinematics.target(wanted, np.array(target.position)))
+    allowed = np.array([PATH_POSITION if row < 3 else PATH_ORIENTATION for row in fixed.rows])
+    if np.any(np.abs(left) > allowed):
+        words = ", ".join(
+            f"{name} by {value * 1e3:.6g} mm" if row < 3 else f"{name} by {np.degrees(value):.6g} deg"
+            for name, row, value, most in zip(fixed.coordinates, fixed.rows, left, allowed, strict=True)
+            if abs(value) > most
+        )
+        raise PacingError(report("IRL430", place, off=words, robot=kinematics.description.name))
+
+
+def broken_condition(q: Array, kinematics: Kinematics) -> tuple[int, Constraint, float] | None:
+    """First row of q (N, n) that breaks a constraint by more than `CONDITION`, the constraint, how much."""
+    for row, posture in enumerate(q):
+        for constraint in kinematics.constraints:
+            broken = float(np.max(np.abs(constraint.residual(posture)), initial=0.0))
+            if not broken <= CONDITION:
+                return row, constraint, broken
+    return None
+
+
+def check_conditions(q: Array, kinematics: Kinematics, place: Place) -> None:
+    """Raise PacingError, IRL351, where rows (N, n) of a motion of the joints break a constraint."""
+    found = broken_condition(q, kinematics)
+    if found is not None:
+        _, constraint, broken = found
+        raise PacingError(report("IRL351", place, name=constraint.name, broken=f"{broken:.3g}"))
