@@ -85,6 +85,24 @@ def test_random_postures(name, seeds, request):
 
 
 @pytest.mark.req("TRF-15")
+def test_six_joints_with_a_way_to_spare_use_it(arm7):
+    """The elbow frozen, between a spherical shoulder and wrist; other joints on their limits now and then."""
+    arm, free = arm7, np.arange(7) != 3
+    lengths = []
+    for seed in range(40):
+        rng = np.random.default_rng([seed, 4])
+        q, konf = drawn(arm, rng), drawn(arm, rng)
+        if seed % 4 == 1:
+            joint = int(rng.integers(arm.n))
+            q[joint] = arm.lower[joint] if seed % 8 == 1 else arm.upper[joint]
+        flow = flow_of(arm, q, konf, free)
+        assert_good(arm, q, konf, free, flow)
+        lengths.append(len(flow.points))
+    # Joints that are pressed against their limits may hold all the others.
+    assert sum(length > 5 for length in lengths) > 30
+
+
+@pytest.mark.req("TRF-15")
 def test_a_posture_on_the_fibre_is_reached_to_the_last_bit(arm):
     free = np.ones(arm.n, dtype=bool)
     for seed in range(20):

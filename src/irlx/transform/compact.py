@@ -11,14 +11,18 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg.lapack import dposv
+from scipy.linalg.lapack import dposv, dpotrs
 
-from irlx.transform.metric import rows_over, solved, within_basis
+from irlx.transform.metric import rows_over, solved
+from irlx.transform.orthogonal import FLAT, null_space, refined_step
 from irlx.transform.precision import QP_EXCESS
 from irlx.transform.qp.interval import IntervalSolver
 from irlx.transform.qp.solver import QpSolver
 
 Array = NDArray[np.float64]
+
+_CORRECTED = 1e-6
+"""Part of a step that its correction may be; its square is what the correction leaves of it."""
 
 
 @dataclass(frozen=True)
@@ -45,27 +49,23 @@ class Step:
     active: NDArray[np.int8]
 
 
-def solve_gram(gram: Array, right: Array) -> Array:
-    """k (m,) of G k = right, G = J H^-1 J' of shape (m, m), by Cholesky factors.
-
-    Where they do not exist to rounding, LU factors are tried; raises numpy.linalg.LinAlgError where
-    these say that J has lost its rank.
-    """
-    _, k, failed = dposv(gram, right)
-    return np.asarray(np.linalg.solve(gram, right) if failed else k)
-
-
 def free_step(problem: StepProblem) -> Array:
     """Minimiser without bounds: d = H^-1 (J' k - g) with J H^-1 J' k = e + J H^-1 g.
 
+    The Gram matrix squares the condition of J. A correction of what is left of the pose takes that back for
+    as long as there is something of the first solution left; beyond that J is factored itself.
     Raises numpy.linalg.LinAlgError where J has lost its rank.
     """
     scaled = rows_over(problem.jacobian, problem.hessian)
     gram = scaled @ problem.jacobian.T
-    k = solve_gram(gram, problem.twist + scaled @ problem.gradient)
-    d = scaled.T @ k - solved(problem.hessian, problem.gradient)
-    # The Gram matrix squares the condition of J; correcting what is left of the pose takes one half back.
-    return np.asarray(d + scaled.T @ solve_gram(gram, problem.twist - problem.jacobian @ d))
+    factor, k, failed = dposv(gram, problem.twist + scaled @ problem.gradient)
+    if not failed and not nearly_singular(gram, factor):
+        pull = solved(problem.hessian, problem.gradient)
+        d = scaled.T @ k - pull
+        correction = scaled.T @ dpotrs(factor, problem.twist - problem.jacobian @ d)[0]
+        if correction.dot(correction) <= _CORRECTED**2 * max(d.dot(d), pull.dot(pull)):
+            return np.asarray(d + correction)
+    return refined_step(problem.jacobian, problem.twist, problem.gradient, problem.hessian)
 
 
 def path_step(problem: StepProblem) -> Array:
@@ -74,7 +74,21 @@ def path_step(problem: StepProblem) -> Array:
     Raises numpy.linalg.LinAlgError where J has lost its rank.
     """
     scaled = rows_over(problem.jacobian, problem.hessian)
-    return np.asarray(scaled.T @ solve_gram(scaled @ problem.jacobian.T, problem.twist))
+    gram = scaled @ problem.jacobian.T
+    factor, k, failed = dposv(gram, problem.twist)
+    if failed or nearly_singular(gram, factor):
+        nothing = np.zeros(problem.gradient.size)
+        return refined_step(problem.jacobian, problem.twist, nothing, problem.hessian)
+    return np.asarray(scaled.T @ k)
+
+
+def nearly_singular(gram: Array, factor: Array) -> bool:
+    """Whether a row of J is nearly a combination of those before it, by Cholesky's factor C of G = J H^-1 J'.
+
+    c_ii^2 / g_ii is the square of the sine of the angle between them, whatever the units of the rows.
+    """
+    left = factor.diagonal().tolist()
+    return any(c * c <= FLAT**2 * g for c, g in zip(left, gram.diagonal().tolist(), strict=True))
 
 
 def within(d: Array, lower: Array, upper: Array) -> bool:
@@ -85,7 +99,7 @@ def within(d: Array, lower: Array, upper: Array) -> bool:
 def bounded_step(problem: StepProblem, d_free: Array, solver: QpSolver) -> Step | None:
     """Minimiser with bounds, given the one without; None where no step keeps path and bounds.
 
-    In y = L^-T z, L L' = N' H N, the problem is min 1/2 |z|^2, lower - d_p <= N L^-T z <= upper - d_p.
+    In d = d_p + N z, N'HN = 1, the problem is min 1/2 |z|^2, lower - d_p <= N z <= upper - d_p.
     Raises ArithmeticError where the solver's answer breaks the bounds: clipping it into them would hide
     that the step no longer keeps the path.
     """
@@ -108,11 +122,6 @@ def bounded_step(problem: StepProblem, d_free: Array, solver: QpSolver) -> Step 
 
 
 def null_space_rows(problem: StepProblem) -> Array:
-    """N L^-T of shape (n, n - m): an H-orthonormal basis of the null space of J."""
+    """N of shape (n, n - m), N'HN = 1: an H-orthonormal basis of the null space of J."""
     m, n = problem.jacobian.shape
-    if m >= n:
-        return np.zeros((n, 0))
-    orthonormal, _ = np.linalg.qr(problem.jacobian.T, mode="complete")
-    basis = orthonormal[:, m:]
-    factor = np.linalg.cholesky(within_basis(problem.hessian, basis))
-    return np.asarray(np.linalg.solve(factor, basis.T).T)
+    return null_space(problem.jacobian, problem.hessian) if m < n else np.zeros((n, 0))

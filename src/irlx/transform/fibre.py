@@ -2,7 +2,9 @@
 
 On the fibre {q : tool pose(q) = pose} the weighted distance phi(q) = 1/2 (q - k)' W (q - k) to a posture k
 has the gradient g = W (q - k). What moves along the fibre can feel of it is its part in the null space of
-the tool Jacobian J, without the joints that the gradient presses against their position limits.
+the tool Jacobian J, without the joints that the gradient presses against their position limits. The rows of
+J count as far as they are independent at nearly all postures (row_rank.py): what joints have to spare does
+not change at a singular posture.
 """
 
 from __future__ import annotations
@@ -16,6 +18,7 @@ from numpy.typing import NDArray
 from irlx.robot.kinematics import Kinematics
 from irlx.transform.compact import StepProblem, bounded_step, free_step, within
 from irlx.transform.qp.dual import DualSolver
+from irlx.transform.row_rank import independent_rows, usual_rank
 
 Array = NDArray[np.float64]
 
@@ -31,6 +34,8 @@ _LONGEST_CORRECTION = 0.5
 _DIFFERENCE = 1e-5
 _UNMOVED = 1e-9
 _BACK_INSIDE = 1e-13
+_SAME_RANK = 6
+"""Digits of the values of joints that stand, rad or m, by which ranks are kept."""
 
 
 @dataclass(frozen=True)
@@ -73,10 +78,29 @@ class Fibre:
         self.free = free
         self._qp = DualSolver()
         self._reach = max(1.0, kinematics.description.reach)
+        self._ranks: dict[bytes, int] = {}
 
     def within(self, lower: Array, upper: Array) -> Fibre:
         """The same fibre within other position limits (n,)."""
-        return Fibre(self.kinematics, self.target, self.konf, self.weights, (lower, upper), self.free)
+        other = Fibre(self.kinematics, self.target, self.konf, self.weights, (lower, upper), self.free)
+        other._ranks = self._ranks
+        return other
+
+    def rank(self, q: Array, movable: NDArray[np.bool_]) -> int:
+        """Coordinates of the pose that joints `movable` (n,) can move, the others standing as in q (n,)."""
+        key = movable.tobytes() + np.round(q[~movable], _SAME_RANK).tobytes()
+        if key not in self._ranks:
+            self._ranks[key] = usual_rank(self.kinematics, q, movable)
+        return self._ranks[key]
+
+    def leads_back(self, q: Array, movable: NDArray[np.bool_]) -> bool:
+        """Whether joints `movable` (n,) may lead q back onto the pose after a step of the free ones."""
+        rank, count = self.rank(q, movable), int(np.count_nonzero(movable))
+        return count > rank or rank == self.rank(q, self.free)
+
+    def _rows(self, q: Array, jacobian: Array, movable: NDArray[np.bool_]) -> Array:
+        """P (rank, m): combinations of the rows of J (m, n) that say once each what the joints move."""
+        return independent_rows(jacobian[:, movable], self.kinematics.row_scale, self.rank(q, movable))
 
     def distance(self, q: Array) -> float:
         """1/2 (q - k)' W (q - k) of the free joints."""
@@ -118,7 +142,8 @@ class Fibre:
                 return found
             least = min(least, error)
             room = (bounds[0] - found)[free], (bounds[1] - found)[free]
-            step = self._correction(twist, jacobian, free, room)
+            rows = self._rows(found, jacobian, free)
+            step = self._correction(rows @ twist, rows @ jacobian[:, free], self.weights[free], room)
             if step is None or float(np.max(np.abs(step), initial=0.0)) > _LONGEST_CORRECTION:
                 return None
             moved = found.copy()
@@ -127,10 +152,11 @@ class Fibre:
         return None
 
     def _correction(
-        self, twist: Array, jacobian: Array, free: NDArray[np.bool_], room: tuple[Array, Array]
+        self, twist: Array, jacobian: Array, weights: Array, room: tuple[Array, Array]
     ) -> Array | None:
-        weights = self.weights[free]
-        problem = StepProblem(jacobian[:, free], twist, np.zeros(weights.size), weights, *room)
+        if len(twist) == 0:
+            return None
+        problem = StepProblem(jacobian, twist, np.zeros(weights.size), weights, *room)
         try:
             step = free_step(problem)
             if within(step, *room):
@@ -146,7 +172,7 @@ class Fibre:
         jacobian = np.array(self.kinematics.difference(q, self.target)[1])
         gradient = np.where(self.free, self.weights * (q - self.konf), 0.0)
         movable = self.free & ~self._pressed(q, jacobian, gradient)
-        basis = self._basis(jacobian, movable)
+        basis = self._basis(q, jacobian, movable)
         orthonormal, _ = np.linalg.qr(basis) if basis.shape[1] else (basis, None)
         along = orthonormal @ (orthonormal.T @ gradient)
         return Tangent(movable, basis, jacobian, gradient, float(np.max(np.abs(along), initial=0.0)))
@@ -158,7 +184,7 @@ class Fibre:
         pressed = np.zeros(q.size, dtype=bool)
         if not np.any(at_lower | at_upper):
             return pressed
-        basis = self._basis(jacobian, self.free)
+        basis = self._basis(q, jacobian, self.free)
         if basis.shape[1] == 0:
             return pressed
         descent = -basis @ (basis.T @ gradient)
@@ -168,16 +194,16 @@ class Fibre:
         pressed[self.free] = self._qp.solve(basis[self.free], lower[self.free], upper[self.free]).active != 0
         return pressed
 
-    def _basis(self, jacobian: Array, movable: NDArray[np.bool_]) -> Array:
+    def _basis(self, q: Array, jacobian: Array, movable: NDArray[np.bool_]) -> Array:
         """W-orthonormal basis (n, r) of the null space of J over the movable joints."""
-        count = int(np.count_nonzero(movable))
-        tasks = jacobian.shape[0]
-        full = np.zeros((movable.size, max(count - tasks, 0)))
-        if count > tasks:
+        count, rank = int(np.count_nonzero(movable)), self.rank(q, movable)
+        full = np.zeros((movable.size, count - rank))
+        if count > rank:
             # With d = W^-1/2 x the null space of J W^-1/2 is orthonormal in x.
             scale = 1.0 / np.sqrt(self.weights[movable])
-            orthonormal, _ = np.linalg.qr((jacobian[:, movable] * scale).T, mode="complete")
-            full[movable] = scale[:, None] * orthonormal[:, tasks:]
+            rows = self._rows(q, jacobian, movable) @ jacobian[:, movable]
+            orthonormal, _ = np.linalg.qr((rows * scale).T, mode="complete")
+            full[movable] = scale[:, None] * orthonormal[:, rank:]
             # What no motion along the fibre moves, as the elbow of an arm with spherical shoulder and wrist,
             # must not move by rounding: standing on its limit it would hold all the others.
             longest = np.max(np.abs(full), axis=1, keepdims=True)
@@ -192,8 +218,10 @@ class Fibre:
         """
         basis, movable = tangent.basis, tangent.movable
         scale = 1.0 / np.sqrt(self.weights[movable])
-        rows = (tangent.jacobian[:, movable] * scale).T
-        multipliers = np.linalg.lstsq(rows, -scale * tangent.gradient[movable], rcond=None)[0]
+        rows = self._rows(q, tangent.jacobian, movable)
+        columns = (rows @ tangent.jacobian[:, movable] * scale).T
+        pull = -scale * tangent.gradient[movable]
+        multipliers = rows.T @ np.linalg.lstsq(columns, pull, rcond=None)[0]
         bent = np.zeros_like(basis)
         for column in range(basis.shape[1]):
             step = _DIFFERENCE / max(float(np.max(np.abs(basis[:, column]))), 1e-300)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import solve_triangular
 
 Array = NDArray[np.float64]
 
@@ -28,6 +29,23 @@ def reduced(hessian: Array, free: NDArray[np.bool_]) -> Array:
     return hessian[free] if hessian.ndim == 1 else hessian[np.ix_(free, free)]
 
 
-def within_basis(hessian: Array, basis: Array) -> Array:
-    """N' H N of a basis N (n, k), shape (k, k)."""
-    return np.asarray((basis.T * hessian if hessian.ndim == 1 else basis.T @ hessian) @ basis)
+def root(hessian: Array) -> Array:
+    """L of H = L L': square roots (n,) of a diagonal, the lower Cholesky factor (n, n) of a matrix."""
+    return np.asarray(np.sqrt(hessian) if hessian.ndim == 1 else np.linalg.cholesky(hessian))
+
+
+def rows_over_root(rows: Array, half: Array) -> Array:
+    """R L^-T of rows R (m, n), L from `root`, shape (m, n)."""
+    return rows / half if half.ndim == 1 else np.asarray(solve_triangular(half, rows.T, lower=True).T)
+
+
+def solved_by_root(half: Array, x: Array, transposed: bool = True) -> Array:
+    """L^-T x, or L^-1 x if not `transposed`, for x (n,) or (n, k), L from `root`."""
+    if half.ndim == 1:
+        return np.asarray((x.T / half).T)
+    return np.asarray(solve_triangular(half, x, lower=True, trans=1 if transposed else 0))
+
+
+def as_matrix(hessian: Array) -> Array:
+    """H (n, n) whatever its form."""
+    return np.diag(hessian) if hessian.ndim == 1 else hessian

@@ -169,7 +169,7 @@ def _descend(fibre: Fibre, q: Array, qp: QpSolver) -> tuple[list[Array], FlowEnd
         step = _step(fibre, iterates[-1], tangent, qp)
         found = None if step is None else _shortened(fibre, iterates[-1], tangent, step)
         if found is None:
-            return iterates, _why(fibre, tangent)
+            return iterates, _why(fibre, iterates[-1], tangent)
         new, tangent = found
         iterates.append(new)
     return iterates, FlowEnd.STEPS
@@ -288,7 +288,7 @@ def _back_on_pose(fibre: Fibre, q: Array, tangent: Tangent) -> Array | None:
     """
     on_limit = (q - fibre.lower <= AT_LIMIT) | (fibre.upper - q <= AT_LIMIT)
     movable = tangent.movable & ~on_limit
-    if np.count_nonzero(movable) >= tangent.jacobian.shape[0]:
+    if fibre.leads_back(q, movable):
         found = fibre.onto_pose(q, movable)
         if found is not None:
             return found
@@ -304,12 +304,13 @@ def _steepness(tangent: Tangent) -> float:
     return float(np.max(np.abs(tangent.gradient), initial=0.0))
 
 
-def _why(fibre: Fibre, tangent: Tangent) -> FlowEnd:
+def _why(fibre: Fibre, q: Array, tangent: Tangent) -> FlowEnd:
     if tangent.projected <= max(ALMOST_AT_REST, 1e3 * _ROUNDING * _steepness(tangent)):
         return FlowEnd.NEAREST
     columns = tangent.jacobian[:, tangent.movable]
     values = scaled_singular_values(columns, fibre.kinematics.row_scale)
-    return FlowEnd.SINGULAR if values[-1] < SINGULAR_RATIO * values[0] else FlowEnd.STALLED
+    least = values[fibre.rank(q, tangent.movable) - 1]
+    return FlowEnd.SINGULAR if least < SINGULAR_RATIO * values[0] else FlowEnd.STALLED
 
 
 def _onto_konf(fibre: Fibre, iterates: list[Array]) -> list[Array]:

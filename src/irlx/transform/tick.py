@@ -111,7 +111,9 @@ class TickSolver:
 
         The same steps as those of `_newton`, with little more than the arithmetic of their closed form:
         this is what ordinary ticks consist of. Frozen joints take part with an inverse Hessian and a pull
-        of zero, which gives them a step of exactly zero. Returns the iterate to go on from with all
+        of zero, which gives them a step of exactly zero. A nearly singular J needs no factors of its own
+        here: what the Gram matrix loses of the pose the next step sees, and less than that stays behind
+        than the rounding of the pose itself is worth in joints. Returns the iterate to go on from with all
         precautions, where there is something to be cautious of.
         """
         target, q, bounds, criterion, free = problem

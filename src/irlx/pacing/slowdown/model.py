@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from irlx.motion.pose_path import Poses
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
+from irlx.transform.row_rank import independent_rows, usual_rank
 
 Array = NDArray[np.float64]
 
@@ -66,6 +67,7 @@ class Model:
     ) -> OntoPath:
         """Postures after `rounds` W-least Newton steps towards the targets.
 
+        Where the free joints cannot move all of a pose, whatever their posture, they do what they can of it.
         Frozen joints keep their bits, so do those of single rows in `held` (N, n). Raises
         numpy.linalg.LinAlgError where a Jacobian has lost its rank.
         """
@@ -73,17 +75,22 @@ class Model:
         if held is not None:
             inverse = np.where(held[:, None, self.free], 0.0, inverse)
         moved = q.copy()
-        rows, free = self.kinematics.rows, int(np.sum(self.free))
-        twists, jacobians = np.zeros((len(q), rows)), np.zeros((len(q), rows, free))
+        m, free = self.kinematics.rows, int(np.sum(self.free))
+        twists, jacobians = np.zeros((len(q), m)), np.zeros((len(q), m, free))
+        rank = usual_rank(self.kinematics, q[0], self.free)
         for _ in range(rounds):
             twists, jacobians = self.differences(moved, targets)
-            scaled = jacobians * inverse
-            gram = scaled @ np.swapaxes(jacobians, 1, 2)
+            asked, rows = twists[:, :, None], jacobians
+            if self.freedom >= 0 and rank < m:
+                chosen = independent_rows(jacobians, self.kinematics.row_scale, rank)
+                asked, rows = chosen @ asked, chosen @ rows
+            scaled = rows * inverse
+            gram = scaled @ np.swapaxes(rows, 1, 2)
             if self.freedom >= 0:
-                k = np.linalg.solve(gram, twists[:, :, None])
+                k = np.linalg.solve(gram, asked)
             else:
                 # Fewer joints than the pose has coordinates: what they can do of it.
-                k = np.linalg.pinv(gram, rcond=_NO_WAY, hermitian=True) @ twists[:, :, None]
+                k = np.linalg.pinv(gram, rcond=_NO_WAY, hermitian=True) @ asked
             moved[:, self.free] += (np.swapaxes(scaled, 1, 2) @ k)[:, :, 0]
         return OntoPath(moved, twists, jacobians)
 

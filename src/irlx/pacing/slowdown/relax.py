@@ -7,8 +7,9 @@ does not depend on the slowing), minimise
     sum_i W |h^2 q''_i|^2 + (h / l)^4 W |q_i - q_walk,i|^2
         + mu W (|dq_i| - 0.995 v dT_i)_+^2 + 1e5 W (position excess)_+^2,     l = tau x programmed speed,
 
-by Newton's method on the active set of the hinges (a band matrix), then back onto the path. A knot at which
-a posture is asked for is pinned: there the price of the second term is 1e5.
+by Newton's method on the active set of the hinges (a band matrix), then back onto the path. A step that does
+not lower the sum is halved: full ones may go to and fro between several sets for ever. A knot at which a posture
+is asked for is pinned: there the price of the second term is 1e5.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ _SPEED_SHARE = 0.995
 _POSITION_PRICE = 1e5
 _PIN_PRICE = 1e5
 _OUTER_ROUNDS = 4
-_ACTIVE_ROUNDS = 12
+_ACTIVE_ROUNDS = 40
 _LONGEST_STEP = 0.2
 _ONTO_PATH_ROUNDS = 2
 _SETTLED = 1e-4
@@ -109,17 +110,37 @@ class _Relaxation:
         """Change (N - 1, f) of the free joints at the interior knots, on the null spaces."""
         matrix, slope = self._smooth_part()
         change = np.zeros_like(self._q)
+        best, least = change, self._sum(change)
         active = self._hinges(change)
         for _ in range(_ACTIVE_ROUNDS):
             blocks, gradient = self._with_hinges(matrix, slope, active)
             y = _solve_blocks(*blocks, -gradient)
+            change = np.zeros_like(self._q)
             change[1:-1] = np.einsum("ifr,ir->if", self._basis[1:-1], y)
             found = self._hinges(change)
             if all(np.array_equal(a, b) for a, b in zip(found, active, strict=True)):
+                best = change
                 break
+            if self._sum(change) > least:
+                change = 0.5 * (best + change)
+                found = self._hinges(change)
+            best, least = min((best, least), (change, self._sum(change)), key=lambda found: found[1])
             active = found
+        change = best
         largest = float(np.max(np.abs(change), initial=0.0))
         return change[1:-1] * min(1.0, _LONGEST_STEP / max(largest, 1e-300))
+
+    def _sum(self, change: Array) -> float:
+        """What is minimised, at a change (N + 1, f) of the postures."""
+        q, w = self._q + change, self._weights
+        before, here, after = self._second
+        bent = before[:, None] * q[:-2] + here[:, None] * q[1:-1] + after[:, None] * q[2:]
+        steps = np.diff(q, axis=0)
+        over = np.maximum(steps - self._fastest, 0.0) + np.maximum(self._slowest - steps, 0.0)
+        out = np.maximum(q - self._upper, 0.0) + np.maximum(self._lower - q, 0.0)
+        squares = (bent**2).sum(axis=0) + (self._attraction[:, None] * (q - self._walked) ** 2).sum(axis=0)
+        squares += self._mu * (over**2).sum(axis=0) + _POSITION_PRICE * (out**2).sum(axis=0)
+        return float(w @ squares)
 
     def _smooth_part(self) -> tuple[tuple[Array, Array, Array], Array]:
         """Blocks (diagonal, first and second above) and gradient of the curvature and the attraction."""

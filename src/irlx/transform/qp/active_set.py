@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from irlx.transform.qp.solver import Array, QpSolution
 
 _ROUNDING = 1e-12
-_MEETING = 1e-10
 
 
 def sharpen(rows: Array, lower: Array, upper: Array, active: NDArray[np.int8]) -> QpSolution | None:
@@ -27,7 +26,7 @@ def sharpen(rows: Array, lower: Array, upper: Array, active: NDArray[np.int8]) -
         if z is None or multipliers is None:
             return None
         missed = np.abs(rows[held] @ z - values)
-        if held.size and float(np.max(missed)) > _MEETING * max(1.0, float(np.max(np.abs(values)))):
+        if held.size and float(np.max(missed)) > _ROUNDING * max(1.0, float(np.max(np.abs(values)))):
             # Rows that depend on each other but for rounding have factors, and no common point.
             return None
         # A row held at its upper bound pushes down, one held at its lower bound pushes up.

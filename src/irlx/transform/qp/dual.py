@@ -15,7 +15,7 @@ from irlx.transform.qp.solver import Array, QpSolution
 _ROUNDING = 1e-12
 _NO_SLOPE = 1e-13
 _DEPENDENT = 1e-11
-_MEETING = 1e-10
+_LEFT_OUTSIDE = 1e-10
 _ROUNDS_PER_ROW = 10
 
 
@@ -79,9 +79,8 @@ class _Iteration:
             release, to_release = self._first_released(pull)
             step = min(to_bound, to_release)
             if not np.isfinite(step):
-                # Bounds of several rows that meet in one point contradict each other by rounding only.
                 self._passed_over.append(row)
-                return excess <= _MEETING * max(1.0, float(np.max(np.abs(self._rows @ self._z))))
+                return excess <= self._rounding_of(pull)
             if open_way:
                 self._z = self._z + step * direction
                 excess -= step * rate
@@ -102,6 +101,15 @@ class _Iteration:
         normals = -np.array(self._sides)[:, None] * self._rows[self._held]
         pull = np.asarray(np.linalg.lstsq(normals.T, normal, rcond=None)[0])
         return pull, normal - normals.T @ pull
+
+    def _rounding_of(self, pull: Array) -> float:
+        """By how much a row that is a combination `pull` of the held ones may miss its bound.
+
+        Bounds that meet in one point but for rounding, `EMPTY_INTERVAL` of each, contradict each other by
+        no more than the combination of what rounding there is.
+        """
+        size = max(1.0, float(np.max(np.abs(self._rows @ self._z))))
+        return EMPTY_INTERVAL * size * (1.0 + float(np.sum(np.abs(pull))))
 
     def _first_released(self, pull: Array) -> tuple[int, float]:
         """Held row whose multiplier reaches 0 first, and the step at which it does."""
@@ -126,8 +134,11 @@ class _Iteration:
             values = np.where(sides > 0.0, self._upper[self._held], self._lower[self._held])
             self._z = np.asarray(np.linalg.lstsq(held, values, rcond=None)[0])
         reached = self._rows @ self._z
-        excess = float(np.max(np.maximum(reached - self._upper, self._lower - reached)))
-        # Rows that meet in one point but for rounding were passed over; held together they may not meet.
-        if excess > _MEETING * max(1.0, float(np.max(np.abs(reached)))):
+        excess = np.maximum(reached - self._upper, self._lower - reached)
+        # Held rows may have changed since rows that met with them were passed over.
+        met = all(
+            excess[row] <= self._rounding_of(self._split(self._rows[row])[0]) for row in self._passed_over
+        )
+        if not met or float(np.max(excess)) > _LEFT_OUTSIDE * max(1.0, float(np.max(np.abs(reached)))):
             return QpSolution(None, self._active())
         return QpSolution(self._z, self._active())
