@@ -8,8 +8,8 @@ does not depend on the slowing), minimise
         + mu W (|dq_i| - 0.995 v dT_i)_+^2 + 1e5 W (position excess)_+^2,     l = tau x programmed speed,
 
 by Newton's method on the active set of the hinges (a band matrix), then back onto the path. A step that does
-not lower the sum is halved: full ones may go to and fro between several sets for ever. A knot at which a posture
-is asked for is pinned: there the price of the second term is 1e5.
+not lower the sum is halved: full ones may go to and fro between several sets for ever. A knot at which a
+posture is asked for is pinned: there the price of the second term is 1e5.
 """
 
 from __future__ import annotations
