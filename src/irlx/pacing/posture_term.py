@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.motion.trapezoid import Trapezoid
-from irlx.pacing.governed_return import governed_reference, way_to_best
+from irlx.pacing.governed_return import governed_reference
+from irlx.pacing.return_way import return_way
 from irlx.pacing.slowdown.model import Model
 from irlx.transform.criteria.combined import Combined, Weighted
 from irlx.transform.criteria.criterion import Criterion
@@ -56,8 +57,11 @@ def posture_term(
         way = asked - start
         return PostureTerm(lambda s, _: Posture(weights, start + (s / law.length) * way), True)
     if cyclic is not None:
-        away = way_to_best(model, start, cyclic, qp)
-        reference = governed_reference(cyclic, away, law, model.limits)
+        away = return_way(model, start, cyclic, qp)
+        if away is None:
+            drawn = Posture(weights, cyclic)
+            return PostureTerm(lambda s, _: drawn, True)
+        reference = governed_reference(away, law, model.limits)
         return PostureTerm(lambda s, _: Posture(weights, reference(s)), True)
     fixed = LeastMotion(weights)
     return PostureTerm(lambda s, _: fixed, False)
