@@ -27,11 +27,13 @@ class PostureTerm:
     """Criterion of a move: `at(s, advance)` of a tick that ends at path parameter s, `advance` behind the one
     before.
 
-    `draws` tells that it draws the joints to a posture.
+    `draws` tells that it draws the joints to a posture, `otherwise` is the term for a motion that it makes
+    impossible.
     """
 
     at: Callable[[float, float], Criterion]
     draws: bool
+    otherwise: PostureTerm | None = None
 
     def with_terms(self, terms: tuple[Weighted, ...], law: Trapezoid) -> PostureTerm:
         """The same with added terms, which act by the time that the way takes at the law's cruising speed."""
@@ -39,7 +41,9 @@ class PostureTerm:
             return self
         base = self.at
         return PostureTerm(
-            lambda s, advance: Combined(base(s, advance), terms, advance / law.speed), self.draws
+            lambda s, advance: Combined(base(s, advance), terms, advance / law.speed),
+            self.draws,
+            None if self.otherwise is None else self.otherwise.with_terms(terms, law),
         )
 
 
@@ -57,11 +61,15 @@ def posture_term(
         way = asked - start
         return PostureTerm(lambda s, _: Posture(weights, start + (s / law.length) * way), True)
     if cyclic is not None:
+        # Far off its pose the stored posture may have no best one near by on some piece of the path: then the
+        # posture stays as far as the tool lets it, and the next moves lead on from where it is.
+        here = Posture(weights, start)
+        staying = PostureTerm(lambda s, _: here, True)
         away = return_way(model, start, cyclic, qp)
         if away is None:
             drawn = Posture(weights, cyclic)
-            return PostureTerm(lambda s, _: drawn, True)
+            return PostureTerm(lambda s, _: drawn, True, staying)
         reference = governed_reference(away, law, model.limits)
-        return PostureTerm(lambda s, _: Posture(weights, reference(s)), True)
+        return PostureTerm(lambda s, _: Posture(weights, reference(s)), True, staying)
     fixed = LeastMotion(weights)
     return PostureTerm(lambda s, _: fixed, False)
