@@ -77,9 +77,7 @@ def test_a_move_that_a_return_makes_impossible_leaves_the_posture() -> None:
     assert share_of_governed_rate(rows) <= 1.0
 
 
-@pytest.mark.parametrize(
-    "seed", [pytest.param(seed, marks=pytest.mark.slow) for seed in (0, 2, 3, 5, 6, 9)]
-)
+@pytest.mark.parametrize("seed", [pytest.param(seed, marks=pytest.mark.slow) for seed in (0, 2, 3, 5, 6, 9)])
 def test_with_position_limits_no_move_fails_either(seed: int) -> None:
     """Each was refused with IRL520 or IRL521 within the first round."""
     rows, ends, _ = triangles(seed, positions=True)

@@ -25,6 +25,8 @@ SAFE_BEND = 0.4
 """Largest |eigenvalue of C - 1| left on the way: what a full step along the fibre leaves of an error."""
 
 _LAST_PIECE = 0.5
+"""Length of the way (rad and m) before its end over which the share of the pull comes to 1."""
+
 _ARRIVED = (FlowEnd.NEAREST, FlowEnd.KONF)
 
 
