@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 from irlx.motion.trapezoid import Trapezoid
-from irlx.pacing.governed_return import governed_reference, way_to_best
+from irlx.pacing.governed_return import governed_reference, share_of_way
+from irlx.pacing.return_way import SAFE_BEND, ReturnWay, return_way, through
 from irlx.robot.limits import JointLimits
+from irlx.transform.fibre import Fibre
 from irlx.transform.qp.proxqp import ProxQpSolver
 from machines import machine
 from slow_cases import jacobian_at
@@ -47,89 +49,162 @@ def case(name: str, seed: int):
     return robot, robot.start + 0.3 * np.random.default_rng(seed).normal(size=robot.n)
 
 
-@pytest.mark.parametrize("seed", range(3))
-@pytest.mark.parametrize("name", ["arm7", "koch11"])
-def test_the_way_ends_where_the_pull_along_the_null_space_vanishes(name: str, seed: int) -> None:
-    robot, goal = case(name, seed)
-    way = way_to_best(robot.model(robot.unlimited()), robot.start, goal, ProxQpSolver())
-    jacobian = jacobian_at(robot, robot.start)
-    null_space = np.linalg.svd(jacobian)[2][6:].T
-    assert np.max(np.abs(jacobian @ way)) < 1e-7
-    assert np.max(np.abs(null_space.T @ (robot.weights * (robot.start + way - goal)))) < 1e-7
+def way_of(robot, goal: np.ndarray, limits: JointLimits | None = None, frozen=()) -> ReturnWay | None:
+    model = robot.model(robot.unlimited() if limits is None else limits, frozen)
+    return return_way(model, robot.start, goal, ProxQpSolver())
+
+
+def along(robot, q: np.ndarray) -> np.ndarray:
+    """Orthonormal basis (n, r) of what moves along the fibre at q."""
+    return np.linalg.svd(jacobian_at(robot, q))[2][6:].T
 
 
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("name", ["arm7", "koch11"])
-def test_the_best_posture_of_the_reference_at_the_start_is_the_one_it_stands_in(name: str, seed: int) -> None:
+def test_the_way_keeps_the_pose_and_ends_where_the_pull_along_it_vanishes(name: str, seed: int) -> None:
     robot, goal = case(name, seed)
-    way = way_to_best(robot.model(robot.unlimited()), robot.start, goal, ProxQpSolver())
-    null_space = np.linalg.svd(jacobian_at(robot, robot.start))[2][6:].T
-    for limits in (robot.unlimited(), limited(0.1, 0.3, robot.n)):
-        reference = governed_reference(goal, way, LAWS[0], limits)
-        assert np.max(np.abs(null_space.T @ (robot.weights * (reference(0.0) - robot.start)))) < 1e-7
+    way = way_of(robot, goal)
+    end, pose = way.postures(1.0), robot.pose(robot.start)
+    assert np.all(way.postures(0.0) == pytest.approx(robot.start, abs=1e-14))
+    for p in np.linspace(0.0, 1.0, 41):
+        for wanted, found in zip(pose, robot.pose(way.postures(p)), strict=True):
+            np.testing.assert_allclose(found, wanted, atol=1e-6)
+    assert np.max(np.abs(along(robot, end).T @ (robot.weights * (end - goal)))) < 1e-7
+    assert robot.weights @ (end - goal) ** 2 < robot.weights @ (robot.start - goal) ** 2
+    assert np.all(way.reference(1.0) == goal)
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("name", ["arm7", "koch11"])
+def test_each_posture_of_the_way_is_the_best_one_for_its_reference(name: str, seed: int) -> None:
+    """And safely so: what the reference pulls against the pose bends the distance by 0.4 at most, but near
+    the end. The bend here by differences of the distance along the fibre, led back onto the pose."""
+    robot, goal = case(name, seed)
+    way = way_of(robot, robot.start + 4.0 * (goal - robot.start))
+    for p in np.linspace(0.0, 1.0, 21):
+        q, reference = way.postures(p), way.references(p)
+        pull = robot.weights * (reference - q)
+        # Between its points a spline leaves the fibre a little.
+        assert np.max(np.abs(along(robot, q).T @ pull)) < 1e-4
+    q, reference = way.postures(0.0), way.references(0.0)
+    if np.linalg.norm(way.postures(1.0) - q) < 0.5:
+        return
+    fibre = Fibre(
+        robot.kinematics,
+        robot.kinematics.target(*robot.kinematics.tool_pose(q)),
+        reference,
+        robot.weights,
+        (np.full(robot.n, -np.inf), np.full(robot.n, np.inf)),
+        np.ones(robot.n, dtype=bool),
+    )
+    for tangent in (along(robot, q) @ np.random.default_rng(seed).normal(size=(robot.n - 6, 5))).T:
+        step = 3e-3 * tangent / np.sqrt(robot.weights @ tangent**2)
+        sides = [fibre.onto_pose(q + side * step) for side in (1.0, -1.0)]
+        second = sum(fibre.distance(side) for side in sides) - 2.0 * fibre.distance(q)
+        assert abs(second / (robot.weights @ step**2) - 1.0) <= SAFE_BEND + 1e-2
+
+
+@pytest.mark.parametrize("name", ["arm7", "koch11"])
+def test_the_best_posture_of_the_reference_at_the_start_is_the_one_it_stands_in(name: str) -> None:
+    for seed in range(3):
+        robot, goal = case(name, seed)
+        way = way_of(robot, goal)
+        for limits in (robot.unlimited(), limited(0.1, 0.3, robot.n)):
+            pull = robot.weights * (governed_reference(way, LAWS[0], limits)(0.0) - robot.start)
+            assert np.max(np.abs(along(robot, robot.start).T @ pull)) < 1e-7
 
 
 @pytest.mark.parametrize("name", ["arm7", "koch11"])
 def test_joints_on_a_limit_do_not_go_beyond_it(name: str) -> None:
-    """Against a second quadratic solver: the same way with one joint held by its limit."""
+    """Against a second quadratic solver: where one joint is held by its limit, the end is the best of all
+    linearised steps that keep the limit."""
     robot, goal = case(name, 1)
-    free = way_to_best(robot.model(robot.unlimited()), robot.start, goal, ProxQpSolver())
-    joint = int(np.argmax(free))
+    joint = int(np.argmax(way_of(robot, goal).postures(1.0) - robot.start))
     upper = np.where(np.arange(robot.n) == joint, robot.start, np.inf)
     limits = robot.unlimited().with_pair("position", np.full(robot.n, -np.inf), upper)
-    way = way_to_best(robot.model(limits), robot.start, goal, ProxQpSolver())
-    rows, none = np.vstack([jacobian_at(robot, robot.start), np.eye(robot.n)[joint]]), np.zeros(7)
-    pull = robot.weights * (robot.start - goal)
-    wanted, _, flag, _ = daqp.solve(np.diag(robot.weights), pull, rows, none, np.append(none[:6], -1e30))
+    way = way_of(robot, goal, limits)
+    end = robot.start if way is None else way.postures(1.0)
+    if way is not None:
+        assert np.max(way.postures(np.linspace(0.0, 1.0, 101))[:, joint]) <= robot.start[joint] + 1e-9
+    rows, none = np.vstack([jacobian_at(robot, end), np.eye(robot.n)[joint]]), np.zeros(7)
+    highest = np.append(none[:6], upper[joint] - end[joint])
+    best, _, flag, _ = daqp.solve(
+        np.diag(robot.weights), robot.weights * (end - goal), rows, highest, np.append(none[:6], -1e30)
+    )
     assert flag == 1
-    np.testing.assert_allclose(way, wanted, atol=1e-7)
-    assert way[joint] <= 0.0
+    np.testing.assert_allclose(best, 0.0, atol=1e-7)
 
 
 def test_frozen_joints_have_no_part_in_the_way() -> None:
     robot, goal = case("koch11", 2)
-    way = way_to_best(robot.model(robot.unlimited(), (1, 4)), robot.start, goal, ProxQpSolver())
-    assert np.all(way[[1, 4]] == 0.0)
-    assert np.max(np.abs(way)) > 1e-3
+    way = way_of(robot, goal, frozen=(1, 4))
+    postures = way.postures(np.linspace(0.0, 1.0, 21))
+    np.testing.assert_allclose(postures[:, [1, 4]] - robot.start[[1, 4]], 0.0, atol=1e-14)
+    assert np.max(np.abs(postures[-1] - robot.start)) > 1e-3
 
 
 def test_a_robot_without_freedom_has_nowhere_to_go() -> None:
     robot, goal = case("arm7", 2)
-    way = way_to_best(robot.model(robot.unlimited(), (2,)), robot.start, goal, ProxQpSolver())
-    assert np.max(np.abs(way)) < 1e-12
+    assert way_of(robot, goal, frozen=(2,)) is None
+
+
+@pytest.mark.parametrize("name", ["arm7", "koch11"])
+def test_the_best_posture_has_no_way_before_it(name: str) -> None:
+    """Neither for a goal with the same pose nor for one whose pull is all against the pose."""
+    robot, _ = case(name, 0)
+    against = jacobian_at(robot, robot.start).T @ np.random.default_rng(1).normal(size=6)
+    against *= 0.05 / np.max(np.abs(against))
+    assert way_of(robot, robot.start.copy()) is None
+    assert way_of(robot, robot.start + against / robot.weights) is None
 
 
 # ---- the reference
 
 
-@laws
-def test_without_a_way_the_goal_is_the_reference(law: Trapezoid) -> None:
-    goal, _ = drawn(1)
-    reference = governed_reference(goal, np.zeros(9), law, limited(1e-3, 1e-3))
-    assert all(np.all(reference(s) == goal) for s in np.linspace(0.0, law.length, 7))
+def straight(goal: np.ndarray, way: np.ndarray) -> ReturnWay:
+    """A way of no bend, as on a straight fibre, with references as far from it as the goal is."""
+    p = np.linspace(0.0, 1.0, 9)[:, None]
+    return through(goal, goal - (1.0 - p) * way - 1.0, goal - (1.0 - p) * way)
+
+
+def bent(goal: np.ndarray, way: np.ndarray) -> ReturnWay:
+    """A half circle of that way."""
+    angle = np.pi * np.linspace(0.0, 1.0, 65)[:, None]
+    radius = 0.5 * np.linalg.norm(way)
+    across = np.roll(way, 1) - way * (way @ np.roll(way, 1)) / (way @ way)
+    across = radius * across / np.linalg.norm(across)
+    turn = goal - 0.5 * way - 0.5 * way * np.cos(angle) + across * np.sin(angle)
+    return through(goal, turn, turn)
 
 
 @laws
 def test_unlimited_joints_go_all_the_way(law: Trapezoid) -> None:
     goal, way = drawn(3)
-    reference = governed_reference(goal, way, law, unlimited())
-    np.testing.assert_allclose(reference(law.length), goal, atol=1e-14)
-    np.testing.assert_allclose(reference(2.0 * law.length), goal, atol=1e-14)
+    reference = governed_reference(straight(goal, way), law, unlimited())
+    assert np.all(reference(law.length) == goal)
+    assert np.all(reference(2.0 * law.length) == goal)
     assert np.all(reference(-1.0) == reference(0.0))
 
 
+@pytest.mark.parametrize("shape", [straight, bent])
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize(("speed", "acc"), [(0.3, 5.0), (5.0, 0.3), (0.2, np.inf), (0.05, 0.05)])
 @laws
-def test_half_the_limits_are_kept_in_time(law: Trapezoid, speed: float, acc: float, seed: int) -> None:
-    """The reference sampled along the law: speeds and accelerations by differences."""
-    goal, way = drawn(seed)
-    reference = governed_reference(goal, way, law, limited(speed, acc))
+def test_half_the_limits_are_kept_in_time(law: Trapezoid, speed: float, acc: float, seed: int, shape) -> None:
+    """The way sampled along the law: speeds and accelerations by differences."""
+    way = shape(*drawn(seed))
+    limits = limited(speed, acc)
+    share = share_of_way(way, law, limits)
     times = np.linspace(0.0, law.duration, 4001)
-    rows = np.array([reference(s) for s in law.evaluate(times)[0]])
+    x = law.evaluate(times)[0] / law.length
+    rows = way.postures(share * x**3 * (10.0 - 15.0 * x + 6.0 * x**2))
+    reference = governed_reference(way, law, limits)
+    apart = [reference(s) - row for s, row in zip(law.length * x[:-1:100], rows[:-1:100], strict=True)]
+    np.testing.assert_allclose(apart, 1.0 if shape is straight else 0.0, atol=1e-9)
     v = np.diff(rows, axis=0) / times[1]
     a = np.diff(v, axis=0) / times[1]
     hardest = acc if np.isfinite(acc) else speed / 0.2
+    assert share > 0.0
     assert np.max(np.abs(v)) <= 0.5 * speed * (1.0 + 1e-6)
     assert np.max(np.abs(a)) <= 0.5 * hardest * (1.0 + 1e-4)
     assert np.max(np.abs(v[[0, -1]])) <= 1e-3 * speed
@@ -138,7 +213,7 @@ def test_half_the_limits_are_kept_in_time(law: Trapezoid, speed: float, acc: flo
 def test_narrower_limits_leave_more_of_the_way() -> None:
     goal, way = drawn(4)
     left = [
-        np.linalg.norm(governed_reference(goal, way, LAWS[0], limited(v, v))(0.4) - goal)
+        np.linalg.norm(governed_reference(straight(goal, way), LAWS[0], limited(v, v))(0.4) - goal)
         for v in (100.0, 1.0, 0.1, 0.0)
     ]
     assert left[0] < 1e-12
@@ -149,6 +224,7 @@ def test_asymmetric_limits_count_by_their_narrower_side() -> None:
     goal, way = drawn(5)
     v = np.full(9, 0.2)
     one_sided = unlimited().with_pair("speed", -v, 5.0 * v)
-    wanted = governed_reference(goal, way, LAWS[0], unlimited().with_pair("speed", -v, v))
-    found = governed_reference(goal, way, LAWS[0], one_sided)
+    both = unlimited().with_pair("speed", -v, v)
+    wanted = governed_reference(straight(goal, way), LAWS[0], both)
+    found = governed_reference(straight(goal, way), LAWS[0], one_sided)
     np.testing.assert_allclose(found(0.4), wanted(0.4), atol=1e-14)

@@ -6,13 +6,15 @@ import numpy as np
 import pytest
 
 from irlx.motion.trapezoid import Trapezoid
-from irlx.pacing.governed_return import governed_reference, way_to_best
+from irlx.pacing.governed_return import governed_reference, share_of_way
+from irlx.pacing.return_way import ReturnWay, return_way
 from irlx.pacing.slowdown.model import Model
 from irlx.robot.limits import JointLimits
 from irlx.transform.criteria.posture import Posture
 from irlx.transform.fibre import Fibre
 from irlx.transform.posture_search import closest, nearest_approach, nearest_posture
 from irlx.transform.qp.proxqp import ProxQpSolver
+from irlx.transform.step_bounds import StepLimiter
 from irlx.transform.tick import TickSolver
 from irlx.transform.tick_problem import TickProblem
 
@@ -26,10 +28,6 @@ def projected(arm, q: np.ndarray, gradient: np.ndarray) -> float:
     _, jacobian = arm.kinematics.difference(q, arm.pose(q))
     _, _, basis = np.linalg.svd(jacobian)
     return float(np.linalg.norm(basis[6:] @ gradient))
-
-
-SAFE_CURVATURE = 0.4
-"""Least curvature of the distance along the fibre, 1 on a straight one, from which a return is governed."""
 
 
 def tick_towards(arm, q: np.ndarray, reference: np.ndarray, max_iterations: int = 30):
@@ -64,32 +62,62 @@ def test_iteration_towards_a_far_reference_settles(arm, away: float) -> None:
     assert settled >= 11
 
 
-def governed_walk(arm, goal: np.ndarray, ticks: int = 200) -> tuple[float, list[np.ndarray], float]:
-    """Curvature of the distance at the start, postures of ticks at a fixed pose, s of a tick.
+RATE, GOVERNED = 1.0, 5.0
+"""Joint speed of the governed walks, rad/s, and what stands for an unknown acceleration: that in 0.2 s."""
 
-    The reference goes the governed way under joint speeds of 1 rad/s, over a law of 2 s.
+HARD = [("koch11", 2.0, 4), ("koch11", 3.0, 3), ("koch11", 3.0, 4), ("koch11", 3.0, 5), ("koch11", 3.0, 7)]
+HARD += [("arm7", 3.0, 3)]
+"""Robot, distance and seed of draws towards which a straight way jumped or did not settle."""
+
+
+def goal_of(arm, away: float, seed: int) -> np.ndarray:
+    return arm.q + np.random.default_rng(seed).uniform(-1.0, 1.0, arm.n) * away
+
+
+def way_of(arm, goal: np.ndarray) -> ReturnWay:
+    free = np.ones(arm.n, dtype=bool)
+    model = Model(arm.kinematics, JointLimits.unlimited(arm.n), arm.weights, free)
+    way = return_way(model, arm.q, goal, ProxQpSolver())
+    assert way is not None
+    return way
+
+
+def fibre_of(arm, goal: np.ndarray) -> Fibre:
+    wide, free = np.full(arm.n, np.inf), np.ones(arm.n, dtype=bool)
+    return Fibre(arm.kinematics, arm.pose(arm.q), goal, arm.weights, (-wide, wide), free)
+
+
+def least_curvature(arm, goal: np.ndarray) -> float:
+    """Of the distance to a goal along the fibre, where it starts; 1 on a straight fibre."""
+    fibre = fibre_of(arm, goal)
+    return float(np.linalg.eigvalsh(fibre.curvature(arm.q, fibre.tangent(arm.q)))[0])
+
+
+def speed_limited(arm, acceleration: float = np.inf) -> JointLimits:
+    v, a = np.full(arm.n, RATE), np.full(arm.n, acceleration)
+    return JointLimits.unlimited(arm.n).with_pair("speed", -v, v).with_pair("acceleration", -a, a)
+
+
+def governed_walk(arm, goal: np.ndarray, law: Trapezoid, ticks: int = 200) -> tuple[list[np.ndarray], float]:
+    """Postures of ticks at a fixed pose, s of a tick.
+
+    The reference goes the governed way under joint speeds of 1 rad/s; nothing bounds the ticks.
     """
-    free, unlimited = np.ones(arm.n, dtype=bool), JointLimits.unlimited(arm.n)
-    way = way_to_best(Model(arm.kinematics, unlimited, arm.weights, free), arm.q, goal, ProxQpSolver())
-    law, speed = Trapezoid.fastest(1.0, 1.0, 1.0), np.ones(arm.n)
-    reference = governed_reference(goal, way, law, unlimited.with_pair("speed", -speed, speed))
-    wide = np.full(arm.n, np.inf)
-    fibre = Fibre(arm.kinematics, arm.pose(arm.q), reference(0.0), arm.weights, (-wide, wide), free)
-    curvature = float(np.linalg.eigvalsh(fibre.curvature(arm.q, fibre.tangent(arm.q)))[0])
+    reference = governed_reference(way_of(arm, goal), law, speed_limited(arm))
     rows = [arm.q]
     for s in law.evaluate(np.linspace(0.0, law.duration, ticks + 1)[1:])[0]:
         solution = tick_towards(arm, rows[-1], reference(float(s)))
         if not solution.solved:
             break
         rows.append(solution.q)
-    return curvature, rows, law.duration / ticks
+    return rows, law.duration / ticks
 
 
 def assert_governed(arm, goal: np.ndarray, rows: list[np.ndarray], dt: float, told: str) -> None:
     """Every tick solved, changes of speed below the governed rate of 1 rad/s in 0.2 s, distance falling."""
     assert len(rows) == 201, told
     speeds = np.diff(np.array([rows[0], *rows]), axis=0) / dt
-    assert np.max(np.abs(np.diff(speeds, axis=0))) / dt <= 1.0 / 0.2, told
+    assert np.max(np.abs(np.diff(speeds, axis=0))) / dt <= GOVERNED, told
     away = [float(arm.weights @ (row - goal) ** 2) for row in rows]
     assert np.all(np.diff(away) <= 1e-9 * away[0]), told
 
@@ -98,31 +126,72 @@ def assert_governed(arm, goal: np.ndarray, rows: list[np.ndarray], dt: float, to
 @pytest.mark.req("TRF-14")
 @pytest.mark.parametrize("away", [1.0, 2.0, 3.0])
 def test_a_governed_reference_is_never_far(arm, away: float) -> None:
-    """What a tick is drawn to is a step away however far the goal: it settles, and no joint jumps.
-
-    Provided that the distance bends upwards along the fibre by `SAFE_CURVATURE` or more, as it does for
-    nearly all goals drawn here; see the test behind this one.
-    """
-    governed = 0
+    """What a tick is drawn to is a step away however far the goal: it settles, and no joint jumps."""
+    law = Trapezoid.fastest(1.0, 1.0, 1.0)
     for seed in range(12):
-        goal = arm.q + np.random.default_rng(seed).uniform(-1.0, 1.0, arm.n) * away
-        curvature, rows, dt = governed_walk(arm, goal)
-        if curvature >= SAFE_CURVATURE:
-            assert_governed(arm, goal, rows, dt, f"seed {seed}, curvature {curvature:.3g}")
-            governed += 1
-    assert governed >= 6
+        goal = goal_of(arm, away, seed)
+        rows, dt = governed_walk(arm, goal, law)
+        assert_governed(arm, goal, rows, dt, f"seed {seed}, curvature {least_curvature(arm, goal):.3g}")
 
 
 @pytest.mark.req("TRF-05")
-@pytest.mark.xfail(
-    strict=True, reason="where the distance hardly bends along the fibre, or downwards, it jumps"
-)
+@pytest.mark.parametrize("away", [1.0, 2.0, 3.0])
+def test_a_whole_return_ends_in_the_best_posture(arm, away: float) -> None:
+    """With time for all of the way the goal itself is the reference at last: its best posture is reached."""
+    law = Trapezoid.fastest(1.0, 0.025, 1.0)
+    for seed in range(12):
+        goal = goal_of(arm, away, seed)
+        way, told = way_of(arm, goal), f"seed {seed}"
+        assert share_of_way(way, law, speed_limited(arm)) == 1.0, told
+        rows, dt = governed_walk(arm, goal, law)
+        assert_governed(arm, goal, rows, dt, told)
+        assert np.all(governed_reference(way, law, speed_limited(arm))(1.0) == goal), told
+        assert projected(arm, rows[-1], arm.weights * (rows[-1] - goal)) < 1e-6, told
+        curvature = fibre_of(arm, goal).curvature(rows[-1], fibre_of(arm, goal).tangent(rows[-1]))
+        assert np.linalg.eigvalsh(curvature)[0] > 0.0, told
+
+
+@pytest.mark.req("TRF-05")
 def test_a_goal_on_whose_slope_the_fibre_bends_away(koch11) -> None:
     """2 rad off the pose the goal's pull against the pose outweighs W: the best posture is no minimum."""
-    goal = koch11.q + np.random.default_rng(4).uniform(-1.0, 1.0, 11) * 2.0
-    curvature, rows, dt = governed_walk(koch11, goal)
+    goal = goal_of(koch11, 2.0, 4)
+    curvature = least_curvature(koch11, goal)
     assert curvature < 0.0
+    rows, dt = governed_walk(koch11, goal, Trapezoid.fastest(1.0, 1.0, 1.0))
     assert_governed(koch11, goal, rows, dt, f"curvature {curvature:.3g}")
+
+
+@pytest.mark.req("TRF-05")
+@pytest.mark.parametrize("acceleration", [np.inf, GOVERNED], ids=["no acceleration", "5 rad/s2"])
+@pytest.mark.parametrize("dt", [pytest.param(2.5e-4, marks=pytest.mark.slow), 1e-3, 1e-2, 5e-2])
+@pytest.mark.parametrize(("name", "away", "seed"), HARD)
+def test_the_way_is_kept_at_any_tick(request, name: str, away: float, seed: int, dt, acceleration) -> None:
+    """Bounded ticks at a fixed pose: each on the way, no bound met, at rest with the reference.
+
+    So nothing overshoots or rings; the promise is 1e-3 of the distance, found is below 1e-7.
+    """
+    arm = request.getfixturevalue(name)
+    way, law = way_of(arm, goal_of(arm, away, seed)), Trapezoid.fastest(0.4, 1.0, 1.0)
+    limits = speed_limited(arm, acceleration)
+    share = share_of_way(way, law, limits)
+    reference, limiter = governed_reference(way, law, limits), StepLimiter(limits, dt)
+    solver, free = TickSolver(arm.kinematics, ProxQpSolver()), np.ones(arm.n, dtype=bool)
+    ticks = int(np.ceil(law.duration / dt)) + 5
+    due_s = law.evaluate(dt * np.arange(1, ticks + 1))[0]
+    q, speed, rows = arm.q, np.zeros(arm.n), []
+    for s in due_s:
+        criterion = Posture(arm.weights, reference(float(s)))
+        solution = solver.solve(TickProblem(arm.pose(arm.q), q, limiter.bounds(q, speed), criterion, free))
+        assert solution.solved
+        assert not np.any(solution.active)
+        q, speed = solution.q, (solution.q - q) / dt
+        rows.append(q)
+    x = due_s / law.length
+    due = way.postures(share * x**3 * (10.0 - 15.0 * x + 6.0 * x**2))
+    length = float(np.linalg.norm(rows[-1] - arm.q))
+    assert length > 1e-3
+    assert np.max(np.abs(rows - due)) <= 1e-5 * length
+    assert np.max(np.abs(np.diff(rows[-5:], axis=0))) <= 1e-9
 
 
 @pytest.mark.req("TRF-05")

@@ -50,9 +50,9 @@ def check_can_move(target: PoseTarget, kinematics: Kinematics, q: Array, place: 
 
 
 def broken_condition(q: Array, kinematics: Kinematics) -> tuple[int, Constraint, float] | None:
-    """First row of q (N, n) that breaks a constraint by more than `CONDITION`, the constraint, how much."""
-    for row, posture in enumerate(q):
-        for constraint in kinematics.constraints:
+    """A row of q (N, n) that breaks a constraint by more than `CONDITION`, the constraint, and how much."""
+    for constraint in kinematics.constraints:
+        for row, posture in enumerate(q):
             broken = float(np.max(np.abs(constraint.residual(posture)), initial=0.0))
             if not broken <= CONDITION:
                 return row, constraint, broken

@@ -53,7 +53,7 @@ from irlx.pacing.posture_left import (
     posture_left,
     why_left,
 )
-from irlx.pacing.posture_term import Asked, PostureTerm, posture_term
+from irlx.pacing.posture_term import Asked, posture_term
 from irlx.pacing.reconfigure import reconfigured, settled_konf
 from irlx.pacing.row_check import broken_bound
 from irlx.pacing.rows import MotionRows, PathPart
@@ -219,7 +219,7 @@ class Pacer:
             goal = goal_shortfall(around, plan.path.end_rotation, plan.path.end_position, self.q)
             raise PacingError(explain_failure(paced, around, plan, self.tick + 1, goal, place))
         self._warn_of_posture_left(paced.q[-1], posture, block, place)
-        return self._line_rows(block, plan, term, paced)
+        return self._line_rows(block, plan, paced)
 
     def _added_terms(self, block: MoveBlock, plan: PlannedPath, limits: JointLimits) -> tuple[Weighted, ...]:
         chosen = self.options.criteria_of(block.criteria)
@@ -278,9 +278,7 @@ class Pacer:
         if broken is not None:
             raise PacingError(explain_broken_row(broken, self.tick + 1, self._robot, place))
 
-    def _line_rows(
-        self, block: MoveBlock, plan: PlannedPath, term: PostureTerm, paced: PacedPath
-    ) -> MotionRows:
+    def _line_rows(self, block: MoveBlock, plan: PlannedPath, paced: PacedPath) -> MotionRows:
         position_error, orientation_error, tool_position, tool_rotation = self._tool(paced.q, paced.demands)
         if broken_condition(paced.q, self._setup.kinematics) is not None:
             raise ArithmeticError("a solved tick breaks a constraint: the inverse transform is at fault")
@@ -300,7 +298,7 @@ class Pacer:
             paced.iterations,
             path=PathPart(
                 paced.demands,
-                term,
+                paced.term,
                 plan.programmed,
                 plan.path.is_pure_turn or plan.path.turn_rate > _TURN_RULES,
                 plan.path.turn_rate,

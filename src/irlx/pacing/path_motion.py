@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,14 +29,16 @@ Array = NDArray[np.float64]
 class PacedPath:
     """Rows q (M, n) of a motion along a path, the hold row not among them.
 
-    `active` (M, n) flags as in `MotionRows`, `demands` of each row, `slowings` where it runs slower than
-    programmed (empty for an ordinary walk), `planned` whether it is a planned motion.
+    `active` (M, n) flags as in `MotionRows`, `demands` of each row, the posture `term` that they follow,
+    `slowings` where it runs slower than programmed (empty for an ordinary walk), `planned` whether it is a
+    planned motion.
     """
 
     q: Array
     active: NDArray[np.int8]
     demands: tuple[Demand, ...]
     iterations: int
+    term: PostureTerm
     slowings: tuple[Slowing, ...] = ()
     planned: bool = False
 
@@ -72,17 +74,28 @@ class PathMotion:
 
 
 def pace_path(motion: PathMotion, model: Model, solver: TickSolver) -> PacedPath | Failure:
-    """Rows of a motion: at the programmed speed where every tick can, else slowed where it must be."""
+    """Rows of a motion: at the programmed speed where every tick can, else slowed where it must be.
+
+    Where neither is possible with its posture term, with the one that this names instead.
+    """
+    found = _paced(motion, model, solver)
+    if isinstance(found, Failure) and motion.term.otherwise is not None:
+        second = _paced(replace(motion, term=motion.term.otherwise), model, solver)
+        return found if isinstance(second, Failure) else second
+    return found
+
+
+def _paced(motion: PathMotion, model: Model, solver: TickSolver) -> PacedPath | Failure:
     walked, broken = _walked(motion, model, solver, thorough=False)
     kept = walked.halt is None and broken is None
     if kept and not (motion.term.draws and _lags(walked.active)):
-        return _as_walked(walked)
+        return _as_walked(motion, walked)
     try:
         found = plan_motion(model, _task(motion))
     except IrlxError:
         # Too slow for the caller, or too many ticks: a walk that keeps everything still serves.
         if kept:
-            return _as_walked(walked)
+            return _as_walked(motion, walked)
         raise
     if not isinstance(found, Refusal):
         return _planned(motion, model, found)
@@ -90,7 +103,7 @@ def pace_path(motion: PathMotion, model: Model, solver: TickSolver) -> PacedPath
         # Where no plan is found a walk that looks round every corner may still be.
         walked, broken = _walked(motion, model, solver, thorough=True)
     if walked.halt is None and broken is None:
-        return _as_walked(walked)
+        return _as_walked(motion, walked)
     return Failure(walked.halt, broken, found)
 
 
@@ -116,8 +129,8 @@ def _walked(
     return walked, broken_bound(motion.start, held, model.limits, motion.dt)
 
 
-def _as_walked(walked: Walk) -> PacedPath:
-    return PacedPath(walked.q, walked.active, walked.demands, walked.iterations)
+def _as_walked(motion: PathMotion, walked: Walk) -> PacedPath:
+    return PacedPath(walked.q, walked.active, walked.demands, walked.iterations, motion.term)
 
 
 def _task(motion: PathMotion) -> MotionTask:
@@ -141,6 +154,7 @@ def _planned(motion: PathMotion, model: Model, found: PlannedMotion) -> PacedPat
         touching(motion.start, found.q, model.limits, motion.dt),
         found.demands,
         0,
+        motion.term,
         slowings(clock, rates, found.factor, motion.dt, len(found.q)),
         True,
     )

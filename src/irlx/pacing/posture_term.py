@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from irlx.motion.trapezoid import Trapezoid
-from irlx.pacing.governed_return import governed_reference, way_to_best
+from irlx.pacing.governed_return import governed_reference
+from irlx.pacing.return_way import return_way
 from irlx.pacing.slowdown.model import Model
 from irlx.transform.criteria.combined import Combined, Weighted
 from irlx.transform.criteria.criterion import Criterion
@@ -28,19 +29,26 @@ class PostureTerm:
     before.
 
     `draws` tells that it draws the joints to a posture, and `through` at which path parameter on the way
-    another one is asked for, None for nowhere.
+    another one is asked for, None for nowhere; `otherwise` is the term for a motion that it makes
+    impossible.
     """
 
     at: Callable[[float, float], Criterion]
     draws: bool
     through: float | None = None
+    otherwise: PostureTerm | None = None
 
     def with_terms(self, terms: tuple[Weighted, ...], law: Trapezoid) -> PostureTerm:
         """The same with added terms, which act by the time that the way takes at the law's cruising speed."""
         if not terms:
             return self
         base = self.at
-        return replace(self, at=lambda s, advance: Combined(base(s, advance), terms, advance / law.speed))
+        otherwise = None if self.otherwise is None else self.otherwise.with_terms(terms, law)
+        return replace(
+            self,
+            at=lambda s, advance: Combined(base(s, advance), terms, advance / law.speed),
+            otherwise=otherwise,
+        )
 
 
 @dataclass(frozen=True)
@@ -82,8 +90,15 @@ def posture_term(
         through = None if asked.via is None else asked.via[0] * law.length
         return PostureTerm(lambda s, _: Posture(weights, on_the_way(s / law.length)), True, through)
     if cyclic is not None:
-        away = way_to_best(model, start, cyclic, qp)
-        reference = governed_reference(cyclic, away, law, model.limits)
-        return PostureTerm(lambda s, _: Posture(weights, reference(s)), True)
+        # Far off its pose the stored posture may have no best one near by on some piece of the path: then the
+        # posture stays as far as the tool lets it, and the next moves lead on from where it is.
+        here = Posture(weights, start)
+        staying = PostureTerm(lambda s, _: here, True)
+        away = return_way(model, start, cyclic, qp)
+        if away is None:
+            drawn = Posture(weights, cyclic)
+            return PostureTerm(lambda s, _: drawn, True, otherwise=staying)
+        reference = governed_reference(away, law, model.limits)
+        return PostureTerm(lambda s, _: Posture(weights, reference(s)), True, otherwise=staying)
     fixed = LeastMotion(weights)
     return PostureTerm(lambda s, _: fixed, False)
