@@ -234,7 +234,8 @@ def move(
 
 def steps() -> list[Step]:
     """The blocks of the program in order: one for each line of its statements that is not just MOVE LIN."""
-    course = {"via": pose((400, 400, 650)), "angle": None, "turns_through_via": False}
+    via = {"via": pose((400, 400, 650)), "angle": None, "turns_through_via": False}
+    course = {**via, "via_reconfiguration": None}
     slowest = in_si((-60, -400, -400, -400, -90, -90, -90))
     narrow = {"lower": slowest, "upper": [-bound for bound in slowest]}
     asked = {"values": in_si((250, 150, 100, 300, 90, 0, 0))}
