@@ -1,7 +1,7 @@
 """Random programs of every kind in cells with random conditions between joints.
 
 The programs are those of `good_streams`: all statements, switches, clauses and criteria. Each runs to its end
-or is refused with a coded message; what was executed until then keeps every condition and passes the verifier.
+or is refused with a coded message; what was executed until then keeps every condition and verifies.
 A failing case is repeated by its seed, and its texts are in the message.
 """
 
