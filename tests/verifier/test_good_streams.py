@@ -60,7 +60,10 @@ def assert_good(found: Outcome) -> None:
     ):
         failed = {check.name: check.text for check in report.failed}
         assert set(failed) == due, f"{failed}\n{found.ending}, {found.case}"
-        assert {check.name for check in report.unchecked} <= unmade, f"{report}\n{found.case}"
+        unchecked = {check.name for check in report.unchecked}
+        # A return that a limit or a posture asked for led away is told and not judged.
+        excused = {"cyclic closure"} if "not judged" in report["cyclic closure"].detail else set()
+        assert unchecked <= unmade | excused, f"{report}\n{found.case}"
     assert found.of_file["file"].status == "ok", str(found.case)
     assert found.of_file["written rates"].status == ("no case" if found.ending == ".irdata" else "ok")
 
