@@ -229,6 +229,13 @@ def test_what_is_aligned_stays_aligned():
         body("a;               { one }\na_long_call;     { two }\nb;\nc;               { three }") == aligned
     )
     assert body("a;     { one }\na_long_call; { two }") == ["a;  { one }", "a_long_call;  { two }"]
+    text = "CONST\nREAL: a    := 1;\nINT: bcd   := (2,\n3);\nINT: e := 4;"
+    assert declared(text) == ["CONST", "  REAL: a  := 1;", "  INT: bcd := (2, 3);", "  INT: e := 4;"]
+    assert declared("VAR\nINT: a   := 1,\n     bcd := 2;") == [
+        "VAR",
+        "  INT: a   := 1,",
+        "       bcd := 2;",
+    ]
     assert body("a[1, 2]  := 1;\nbcd      := 2;") == ["a[1, 2] := 1;", "bcd     := 2;"]
     assert body("a    := 1;\nbcd  := 2;\ne := 3;") == ["a   := 1;", "bcd := 2;", "e := 3;"]
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from irlx.language import tree
+from irlx.language.format.alignment import Alignment
 from irlx.language.format.document import HARD, Doc, Fill, Here, Indent
 from irlx.language.format.statements import StatementLayout
 
@@ -45,25 +46,28 @@ class PartLayout(StatementLayout):
             if self.tokens.kind in _SECTIONS:
                 parts += [HARD, self.tokens.word(*_SECTIONS), self._items(waiting)]
             else:
-                parts += [HARD, self._declaration(waiting.pop(0)), self.tokens.word("SEMICOLON")]
+                parts += [HARD, self._declaration(waiting.pop(0), Alignment())]
+                parts.append(self.tokens.word("SEMICOLON"))
         return (*parts, *self.before(first=False))
 
     def _items(self, waiting: list[tree.Declaration]) -> Doc:
         """What a section declares; takes it from the front of `waiting`."""
         lines: list[Doc] = []
+        run = Alignment()
         while waiting and isinstance(waiting[0], _ITEMS) and self.tokens.kind not in _SECTIONS:
             lines += self.before(first=not lines)
-            lines += [HARD, self._declaration(waiting.pop(0)), self.tokens.word("SEMICOLON")]
+            lines += [HARD, self._declaration(waiting.pop(0), run), self.tokens.word("SEMICOLON")]
+        run.close()
         inner, outer = self.before_end()
         return (Indent((*lines, *inner)), *outer)
 
-    def _declaration(self, node: tree.Declaration) -> Doc:
+    def _declaration(self, node: tree.Declaration, run: Alignment) -> Doc:
         word = self.tokens.word
         match node:
             case tree.ConstDeclaration():
-                return (self.type_form(node.type), word("COLON"), " ", self._variables(node.constants))
+                return self._variables(node.type, node.constants, run)
             case tree.VarDeclaration():
-                return (self.type_form(node.type), word("COLON"), " ", self._variables(node.variables))
+                return self._variables(node.type, node.variables, run)
             case tree.TypeDefinition():
                 return (self.type_form(node.type), " ", word("EQUAL"), " ", self.name(node.name))
             case tree.SignalDeclaration():
@@ -92,16 +96,25 @@ class PartLayout(StatementLayout):
             return names
         return (names, " ", self.tokens.word("TO"), " ", self.name(node.recipient))
 
-    def _variables(self, variables: Sequence[tree.Variable]) -> Doc:
+    def _variables(self, form: tree.TypeForm, variables: Sequence[tree.Variable], run: Alignment) -> Doc:
         """Names alone fill lines; with values each has its own line where not all fit."""
+        kind: Doc = (self.type_form(form), self.tokens.word("COLON"), " ")
+        if len(variables) == 1:
+            return (kind, self._variable(variables[0], run, kind))
+        run.close()
         bare = all(variable.initial is None for variable in variables)
-        return self.listed(variables, self._variable, fill=bare)
+        own = Alignment()
+        listed = self.listed(variables, lambda variable: self._variable(variable, own, ""), fill=bare)
+        own.close()
+        return (kind, listed)
 
-    def _variable(self, node: tree.Variable) -> Doc:
+    def _variable(self, node: tree.Variable, run: Alignment, before: Doc) -> Doc:
+        """A name and its value, aligned with others of the run; `before` stands before it on its line."""
         name = self.name(node.name)
         if node.initial is None:
             return name
-        return (name, " ", self.tokens.word("ASSIGN"), " ", self.expression(node.initial))
+        pad = run.add((before, name), None if self.tokens.has_comments else self.tokens.column)
+        return (name, pad, " ", self.tokens.word("ASSIGN"), " ", self.expression(node.initial))
 
     def _signals(self, node: tree.SignalDeclaration) -> Doc:
         words: list[Doc] = [self.tokens.word("DIGITAL", "ANALOG"), " "] if node.medium is not None else []

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from irlx.language import tree
-from irlx.language.format.document import HARD, Doc, Fill, Group, Here, Indent, Line, Pad
+from irlx.language.format.alignment import Alignment
+from irlx.language.format.document import HARD, Doc, Indent
 from irlx.language.format.motion import MotionLayout
 
 __all__ = ["StatementLayout"]
@@ -22,7 +23,7 @@ class StatementLayout(MotionLayout):
     def _block(self, statements: Sequence[tree.Statement]) -> tuple[Doc, list[Doc]]:
         """A block, and the comments that belong to the word after it."""
         lines: list[Doc] = []
-        run = _Alignment()
+        run = Alignment()
         for statement in statements:
             lines += self.before(first=not lines)
             lines += [HARD, self._aligned(statement, run)]
@@ -32,7 +33,7 @@ class StatementLayout(MotionLayout):
         run.close()
         return Indent((*lines, *inner)), outer
 
-    def _aligned(self, statement: tree.Statement, run: _Alignment) -> Doc:
+    def _aligned(self, statement: tree.Statement, run: Alignment) -> Doc:
         """A statement; assignments whose signs the text has aligned stay so."""
         if not isinstance(statement, tree.Assignment):
             run.close()
@@ -135,53 +136,3 @@ class StatementLayout(MotionLayout):
             parts += [" ", self.tokens.word("TIMEOUT"), " ", self.expression(node.timeout), " "]
             parts.append(self.tokens.word("SEC"))
         return tuple(parts)
-
-
-class _Alignment:
-    """A run of assignments whose ``:=`` stand below each other in the text."""
-
-    def __init__(self) -> None:
-        self._column: int | None = None
-        self._members: list[tuple[Pad, int]] = []
-
-    def add(self, target: Doc, column: int | None) -> Pad:
-        """Blanks for an assignment whose sign has this column in the text; another one ends the run.
-
-        None, for a sign that is not to be aligned, and a target that holds comments end it as well.
-        """
-        width = _flat_width(target) if column is not None else None
-        if column != self._column or width is None:
-            self.close()
-        pad = Pad()
-        if width is not None:
-            self._column = column
-            self._members.append((pad, width))
-        return pad
-
-    def close(self) -> None:
-        """End the run: from now on its blanks are known."""
-        widest = max((width for _, width in self._members), default=0)
-        for pad, width in self._members:
-            pad.width = widest - width
-        self._column, self._members = None, []
-
-
-def _flat_width(doc: Doc) -> int | None:
-    """Characters of a target on one line, or None where it holds comments."""
-    width, todo = 0, [doc]
-    while todo:
-        top = todo.pop()
-        if isinstance(top, str):
-            width += len(top)
-        elif isinstance(top, tuple):
-            todo.extend(top)
-        elif isinstance(top, Here | Group):
-            todo.append(top.doc)
-        elif isinstance(top, Fill):
-            todo.extend(top.items)
-            width += len(top.items) - 1
-        elif isinstance(top, Line):
-            width += len(top.flat)
-        else:
-            return None
-    return width
