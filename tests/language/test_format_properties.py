@@ -50,7 +50,7 @@ def judge(text):
 
 
 @pytest.mark.req("LANG-74")
-@settings(RELAXED, max_examples=150)
+@settings(RELAXED, max_examples=100)
 @given(PROGRAMS)
 def test_random_programs(text):
     source = source_text("t.irl", text)
@@ -68,7 +68,7 @@ def out_of_order(text):
 
 @pytest.mark.req("LANG-74")
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
-@settings(RELAXED, max_examples=15)
+@settings(RELAXED, max_examples=8)
 @given(data=st.data())
 def test_programs_with_other_blanks_and_more_comments(path, data):
     text = path.read_text(encoding="utf-8")
@@ -78,7 +78,7 @@ def test_programs_with_other_blanks_and_more_comments(path, data):
 
 @pytest.mark.req("LANG-74")
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
-@settings(RELAXED, max_examples=15)
+@settings(RELAXED, max_examples=4)
 @given(data=st.data())
 def test_blanks_alone_do_not_show(path, data):
     """Without comments, a line end and a blank are the same, but where the text breaks a list."""
