@@ -34,6 +34,8 @@ def test_contents(wheel):
     assert {"irlx/grammar/irl.lark", "irlx/py.typed", "irlx/__main__.py"} <= names
     assert {f"irlx/cell/robots/{name}" for name in ROBOTS if name.endswith((".urdf", ".toml"))} <= names
     assert {"koch11.urdf", "koch11.toml"} <= set(ROBOTS)
+    pages = {path.name for path in (ROOT / "docs" / "diagnostics").iterdir()}
+    assert {f"irlx/docs/diagnostics/{name}" for name in pages} <= names
     beside = {name.split("/")[0] for name in names}
     assert len(beside) == 2
     assert not [name for name in names if name.endswith((".pyc", ".part"))]
@@ -72,4 +74,8 @@ def test_the_unpacked_wheel_runs(wheel, tmp_path):
     assert done.stdout.startswith(str(package))
     assert "square.irl, complete: 5 moves" in done.stdout
     assert "checks passed" in done.stdout
+    done = subprocess.run(
+        [*call, "explain", "irl203"], cwd=work, env=environment, capture_output=True, text=True, check=False
+    )
+    assert "# IRL203: unknown parameter of MOVE" in done.stdout
     assert sorted(path.name for path in work.iterdir()) == ["square.irdata", "square.irl", "square.toml"]

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from irlx.cell.errors import CellError
     from irlx.checking import check
     from irlx.diagnostics import Diagnostic, IrlxError
+    from irlx.language.format import format_source
     from irlx.pipeline import run, stream
     from irlx.program import Program, ProgramError, load
     from irlx.registration import register
@@ -42,6 +43,7 @@ _HOMES = {
     "Sample": "irlx.streams.sample",
     "StreamError": "irlx.streams.error",
     "check": "irlx.checking",
+    "format_source": "irlx.language.format",
     "load": "irlx.program",
     "register": "irlx.registration",
     "run": "irlx.pipeline",
@@ -66,6 +68,7 @@ __all__ = [
     "StreamError",
     "__version__",
     "check",
+    "format_source",
     "load",
     "register",
     "run",

@@ -8,6 +8,7 @@ from pathlib import Path
 from irlx.diagnostics import Diagnostic, IrlxError
 from irlx.interpreter.support import unsupported
 from irlx.language import tree
+from irlx.language.suppression import unused_finding, without_ignored
 from irlx.program import ProgramError, analyse_file
 
 PathLike = str | os.PathLike[str]
@@ -25,7 +26,10 @@ def check(program: PathLike, cell: PathLike | None = None) -> list[Diagnostic]:
         return list(error.diagnostics)
     found = list(analysis.diagnostics)
     if isinstance(analysis.tree, tree.Program):
-        found += unsupported(analysis.tree, analysis.source, analysis.data_lists)
+        later = unsupported(analysis.tree, analysis.source, analysis.data_lists)
+        kept, unused = without_ignored(later, analysis.ignores)
+        found += kept
+        found += [unused_finding(one) for one in unused if one.place.text is analysis.source]
     return found + _cell_findings(cell) if cell is not None else found
 
 

@@ -65,7 +65,7 @@ def load(path: PathLike, cell: PathLike | None = None) -> Program:
     wrong with the cell is not told here.
     """
     file = Path(path)
-    content, files = _content(file), _ListFiles(file)
+    content, files = read_file(file), _ListFiles(file)
     analysis = _analysis(file, content, cell, files)
     if analysis.has_errors or not isinstance(analysis.tree, tree.Program):
         raise ProgramError(_why_no_program(analysis))
@@ -89,7 +89,7 @@ def digest_of_all(program: str, lists: Sequence[DataListFile]) -> str:
 def analyse_file(path: PathLike, cell: PathLike | None = None) -> Analysis:
     """Analysis of a program, module or data list file. Raises ProgramError where the file cannot be read."""
     file = Path(path)
-    return _analysis(file, _content(file), cell, _ListFiles(file))
+    return _analysis(file, read_file(file), cell, _ListFiles(file))
 
 
 def cell_path(program: Program, given: PathLike | None) -> Path:
@@ -163,7 +163,8 @@ def _why_no_program(analysis: Analysis) -> tuple[Diagnostic, ...]:
     return (*analysis.diagnostics, report("IRL008", place, name=analysis.tree.name.name, kind=kind))
 
 
-def _content(path: Path) -> bytes:
+def read_file(path: Path) -> bytes:
+    """Content of a file. Raises ProgramError: IRL001 where there is none, IRL007 for a folder, IRL002."""
     try:
         return path.read_bytes()
     except FileNotFoundError:

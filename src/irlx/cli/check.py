@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from typing import Any
+
+from irlx.diagnostics import Diagnostic
+from irlx.diagnostics.rendering import MACHINE_FORMATS
 
 _EXAMPLE = "example:\n  irlx check programs/koch/square.irl --cell programs/koch/square.toml\n"
 
@@ -19,25 +23,45 @@ def add_parser(commands: Any) -> None:
     )
     parser.add_argument("programs", nargs="+", metavar="P.irl", help="program, module or data list files")
     parser.add_argument("--cell", metavar="C.toml", help="check this cell file, too")
+    parser.add_argument(
+        "--format",
+        choices=["text", *MACHINE_FORMATS],
+        default="text",
+        help="how to print the findings (default: text, on stderr; the others go to stdout, alone)",
+    )
     parser.set_defaults(command=command)
 
 
 def command(options: argparse.Namespace) -> int:
-    """Print the findings on stderr and a line a program on stdout; 1 where there are errors."""
-    import sys
-
+    """Print the findings and, in text, a line a program on stdout; 1 where there are errors."""
     from irlx.checking import check
-    from irlx.cli.output import encodable, exit_code, print_diagnostics
+    from irlx.cli.output import exit_code
 
-    worst = 0
-    for program in options.programs:
-        found = check(program, options.cell)
+    checked = [(program, check(program, options.cell)) for program in options.programs]
+    if options.format == "text":
+        _print_text(checked)
+    else:
+        _print_for_machines([finding for _, found in checked for finding in found], options.format)
+    return max(exit_code(found) for _, found in checked)
+
+
+def _print_text(checked: list[tuple[str, list[Diagnostic]]]) -> None:
+    from irlx.cli.output import encodable, print_diagnostics
+
+    for program, found in checked:
         print_diagnostics(found)
         errors = sum(diagnostic.is_error for diagnostic in found)
         words = f"{program}: {_count(errors, 'error')}, {_count(len(found) - errors, 'warning')}"
         print(encodable(words, sys.stdout))
-        worst = max(worst, exit_code(found))
-    return worst
+
+
+def _print_for_machines(found: list[Diagnostic], format: str) -> None:
+    """What several programs share, a cell or a data list, is told once."""
+    from irlx.cli.output import encodable
+
+    text = MACHINE_FORMATS[format](list(dict.fromkeys(found)))
+    if text:
+        print(encodable(text, sys.stdout))
 
 
 def _count(number: int, noun: str) -> str:

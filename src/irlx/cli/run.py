@@ -194,10 +194,9 @@ def _print_tick(run: Run, options: argparse.Namespace) -> None:
 
 
 def _plain_diagnostics(diagnostics: Iterable[Diagnostic]) -> list[dict[str, object]]:
-    return [
-        {"code": d.code, "severity": d.severity.value, "message": d.message, "place": str(d.place or "")}
-        for d in diagnostics
-    ]
+    from irlx.diagnostics.plain import plain_diagnostic
+
+    return [plain_diagnostic(diagnostic) for diagnostic in diagnostics]
 
 
 def _verified(path: Path, job: Job) -> Any:

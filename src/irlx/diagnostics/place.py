@@ -83,6 +83,13 @@ class Place:
             return None
         return self.text.line_and_column(self.span.start)
 
+    @property
+    def end_line_and_column(self) -> tuple[int, int] | None:
+        """Line and column just after the last character, or None where the place is no text."""
+        if self.text is None or self.span is None:
+            return None
+        return self.text.line_and_column(self.span.end)
+
     def __str__(self) -> str:
         if self.line_and_column is not None:
             line, column = self.line_and_column

@@ -16,6 +16,7 @@ from irlx.language.moves import check_move
 from irlx.language.names import check_names
 from irlx.language.parser import parse
 from irlx.language.scope import Scope
+from irlx.language.suppression import Ignore, after_ignoring
 from irlx.language.switches import check_freeze, check_switches
 from irlx.language.symbols import Symbol
 
@@ -36,7 +37,8 @@ class Analysis:
 
     `tree` is partial after a mistake and None where nothing is left; `symbols` are the program's own
     declarations by casefolded name, `types` the types among them; `comments` are in the order of the text.
-    `data_lists` are those that it imports, in order, as far as they could be read.
+    `data_lists` are those that it imports, in order, as far as they could be read. `ignores` are what
+    comments ask to ignore and only a later stage can find.
     """
 
     source: SourceText
@@ -46,6 +48,7 @@ class Analysis:
     symbols: Mapping[str, Symbol] = field(default_factory=dict)
     types: Mapping[str, Symbol] = field(default_factory=dict)
     data_lists: tuple[ImportedList, ...] = ()
+    ignores: tuple[Ignore, ...] = ()
 
     @property
     def has_errors(self) -> bool:
@@ -76,14 +79,16 @@ def analyse(
         findings += _import_findings(parsed.tree, scope, resolver)
     if parsed.complete and isinstance(parsed.tree, tree.Program):
         findings += check_switches(parsed.tree, source)
+    told, later = after_ignoring((*parsed.findings, *imports.findings, *findings), source, parsed, imports)
     return Analysis(
         source,
         parsed.tree,
-        in_order((*parsed.findings, *imports.findings, *findings), source, imports.lists),
+        in_order(told, source, imports.lists),
         parsed.comments,
         MappingProxyType(scope.values),
         MappingProxyType(scope.types),
         imports.lists,
+        later,
     )
 
 

@@ -33,6 +33,25 @@ SYNTAX: tuple[Code, ...] = (
     ),
     error("IRL117", "the file holds no program", "begin it with PROGRAM name;"),
     error("IRL118", "{what} nested deeper than {limit} levels", "use variables for parts, or procedures"),
+    warning(
+        "IRL120",
+        "nothing on this line gives {ignored}: the comment ignores nothing",
+        "remove the code; a comment ignores what begins on its own line",
+    ),
+    warning(
+        "IRL121", "{ignored} is an error and cannot be ignored", "remove the code, and repair what it says"
+    ),
+    warning("IRL122", "no message has the code {unknown}{near}", "irlx explain lists all codes"),
+    warning(
+        "IRL123",
+        "this comment to irlx is not understood: {cause}",
+        "write {{ irlx: ignore IRL205 }}, several codes with commas between",
+    ),
+    error(
+        "IRL124",
+        "the formatter would not keep {what}; the text stays as it was",
+        "this is a fault of irlx, not of your program; please report it with the program",
+    ),
     error("IRL130", "not UTF-8 text: byte {byte} at offset {offset}", "save the file as UTF-8"),
     error("IRL131", "not a text file: NUL byte at offset {offset}", "save the file as UTF-8 text"),
 )

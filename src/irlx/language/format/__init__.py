@@ -1,0 +1,78 @@
+"""The formatter: one look for all programs, the same program, every comment kept."""
+
+from __future__ import annotations
+
+from irlx.diagnostics import Diagnostic, IrlxError, Place, SourceText, report
+from irlx.language import tree
+from irlx.language.format.kept import what_is_lost
+from irlx.language.format.line_ends import text_of
+from irlx.language.format.parts import PartLayout
+from irlx.language.format.render import render
+from irlx.language.format.repair import REPAIRED, repaired
+from irlx.language.format.trivia import Tokens, UnexpectedToken
+from irlx.language.lexing import lex
+from irlx.language.moves import check_move
+from irlx.language.parser import Parse, parse
+from irlx.language.source import source_text
+
+__all__ = ["format_source"]
+
+_ROUNDS = 6
+"""A comment in an odd place may need more than one; text without any needs one."""
+
+
+def format_source(text: str, name: str = "<text>") -> str:
+    """The text of a program, module or data list in irlx's form.
+
+    Raises IrlxError: with all findings of the syntax where the text has errors, IRL124 where the result would
+    not mean the same, lose a comment, or change when formatted again. `name` is how findings name the text.
+    """
+    ends = "\r\n" if text.partition("\n")[0].endswith("\r") else "\n"
+    source = source_text(name, text.replace("\r\n", "\n"))
+    parsed = parse(source)
+    errors = _errors(parsed, source)
+    if errors or parsed.tree is None:
+        raise IrlxError(errors)
+    mended = source_text(name, repaired(source.text, parsed.findings))
+    formatted = _settled(mended)
+    lost = what_is_lost(source, parsed, source_text(name, formatted))
+    if lost:
+        raise _given_up(source, lost)
+    return formatted.replace("\n", ends) if ends != "\n" else formatted
+
+
+def _errors(parsed: Parse, source: SourceText) -> list[Diagnostic]:
+    """Findings that keep a text from being formatted, and the others if there are any."""
+    found = list(parsed.findings)
+    for node in tree.walk(parsed.tree) if parsed.tree is not None else ():
+        if isinstance(node, tree.Move):
+            found += [one for one in check_move(node, source) if one.code == "IRL114"]
+    return found if any(one.is_error for one in found) else []
+
+
+def _settled(source: SourceText) -> str:
+    """The text formatted until it stays as it is."""
+    text = source.text
+    for _ in range(_ROUNDS):
+        again = _laid_out(source_text(source.name, text))
+        if again == text:
+            return text
+        text = again
+    raise _given_up(source, "the form of a text that it has formatted")
+
+
+def _laid_out(source: SourceText) -> str:
+    """One round of formatting a text without findings of the syntax."""
+    parsed = parse(source)
+    if parsed.tree is None or any(one.is_error or one.code in REPAIRED for one in parsed.findings):
+        raise _given_up(source, "the meaning of the program")
+    lexed = lex(source)
+    try:
+        doc = PartLayout(Tokens(source, lexed.tokens, lexed.comments)).root(parsed.tree)
+    except UnexpectedToken as cause:
+        raise _given_up(source, f"the order of the text ({cause})") from cause
+    return text_of(render(doc))
+
+
+def _given_up(source: SourceText, what: str) -> IrlxError:
+    return IrlxError(report("IRL124", Place(source.name), what=what))
