@@ -103,7 +103,7 @@ def test_a_formatter_that_loses_something_leaves_the_file(inside, ugly, monkeypa
     monkeypatch.setattr(formatter, "text_of", lambda rows: text_of(rows).replace("{ a }", ""))
     done = inside("fmt", "u.irl")
     assert (done.returncode, done.stdout) == (1, "")
-    assert done.stderr.startswith("u.irl: error IRL124: the formatter would not keep every comment;")
+    assert done.stderr.startswith("u.irl: error IRL144: the formatter would not keep every comment;")
     assert ugly.read_text() == UGLY
 
 

@@ -31,10 +31,10 @@ MESSAGES = {
     "IRL116": (1, 1, "expected PROGRAM, MODULE or DATALIST at the start, found the keyword BEGIN"),
     "IRL117": (1, 1, "the file holds no program"),
     "IRL118": (4, 108, "parentheses nested deeper than 100 levels"),
-    "IRL120": (4, 34, "nothing on this line gives IRL205: the comment ignores nothing"),
-    "IRL121": (4, 46, "IRL203 is an error and cannot be ignored"),
-    "IRL122": (3, 18, "no message has the code IRL2O5; did you mean 'IRL425' or 'IRL245' or 'IRL225'?"),
-    "IRL123": (3, 3, "this comment to irlx is not understood: expected irlx: ignore, then codes"),
+    "IRL140": (4, 34, "nothing on this line gives IRL205: the comment ignores nothing"),
+    "IRL141": (4, 46, "IRL203 is an error and cannot be ignored"),
+    "IRL142": (3, 18, "no message has the code IRL2O5; did you mean 'IRL425' or 'IRL245' or 'IRL225'?"),
+    "IRL143": (3, 3, "this comment to irlx is not understood: expected irlx: ignore, then codes"),
     "IRL201": (4, 3, "unknown name 'lenght'; did you mean 'length'?"),
     "IRL202": (3, 11, "'Count' is declared twice"),
     "IRL203": (4, 15, "MOVE has no parameter 'SPED'; did you mean 'SPEED' or 'SPEED_PTP' or 'SPEED_ORI'?"),
@@ -130,4 +130,4 @@ def test_imports(code):
 
 def test_language_codes_are_all_covered():
     ours = {code for code in CATALOGUE if re.match(r"IRL(1\d\d|2[01]\d|3[0-3]\d|4[01]\d)", code)}
-    assert ours == MESSAGES.keys() | IMPORT_MESSAGES.keys() | {"IRL124", "IRL130", "IRL131"}
+    assert ours == MESSAGES.keys() | IMPORT_MESSAGES.keys() | {"IRL144", "IRL130", "IRL131"}

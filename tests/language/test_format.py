@@ -315,5 +315,5 @@ def test_a_formatter_that_spoils_something_gives_up(monkeypatch, spoil, what):
     monkeypatch.setattr(formatter, "text_of", spoiled)
     with pytest.raises(irlx.IrlxError) as caught:
         format_source("PROGRAM t; BEGIN x := 1; { c } ENDPROGRAM")
-    assert caught.value.reason.code == "IRL124"
+    assert caught.value.reason.code == "IRL144"
     assert what in caught.value.reason.message

@@ -26,7 +26,7 @@ def codes(body, declarations=""):
 def test_a_warning_is_ignored(comment):
     assert codes("OUT_3 := TRUE;") == ["IRL205"]
     assert codes(f"OUT_3 := TRUE; {comment}") == []
-    assert codes(f"{comment} OUT_3 := TRUE;") == ([] if "\n" not in comment else ["IRL120", "IRL205"])
+    assert codes(f"{comment} OUT_3 := TRUE;") == ([] if "\n" not in comment else ["IRL140", "IRL205"])
 
 
 @pytest.mark.req("LANG-02")
@@ -40,16 +40,16 @@ def test_several_codes_in_one_comment():
 @pytest.mark.parametrize(
     ("body", "expected"),
     [
-        ("{ irlx: ignore IRL205 }\nOUT_3 := TRUE;", ["IRL120", "IRL205"]),
-        ("HALT; { irlx: ignore IRL205, IRL104 }", ["IRL120", "IRL120"]),
-        ("x := 1; { irlx: ignore IRL201 }", ["IRL201", "IRL121"]),
-        ("OUT_3 := TRUE; { irlx: ignore IRL206, IRL205, IRL2 }", ["IRL121", "IRL122"]),
-        ("HALT; { irlx: ignore }", ["IRL123"]),
-        ("HALT; { irlx: please be quiet }", ["IRL123"]),
+        ("{ irlx: ignore IRL205 }\nOUT_3 := TRUE;", ["IRL140", "IRL205"]),
+        ("HALT; { irlx: ignore IRL205, IRL104 }", ["IRL140", "IRL140"]),
+        ("x := 1; { irlx: ignore IRL201 }", ["IRL201", "IRL141"]),
+        ("OUT_3 := TRUE; { irlx: ignore IRL206, IRL205, IRL2 }", ["IRL141", "IRL142"]),
+        ("HALT; { irlx: ignore }", ["IRL143"]),
+        ("HALT; { irlx: please be quiet }", ["IRL143"]),
         ("HALT; { irlx ignores nothing here }", []),
         ("HALT; { what irlx: ignore IRL205 means }", []),
         ("OUT_3 := TRUE; { irlx: ignore IRL205 ", ["IRL110", "IRL205"]),
-        ("HALT; { irlx: ignore IRL120 }", ["IRL120"]),
+        ("HALT; { irlx: ignore IRL140 }", ["IRL140"]),
     ],
 )
 def test_what_cannot_be_ignored_is_told(body, expected):
@@ -68,7 +68,7 @@ def test_what_only_the_check_finds_is_ignored_there(tmp_path):
     assert irlx.check(file) == []
     assert irlx.load(file).diagnostics == ()
     file.write_text("PROGRAM p;\nBEGIN\n  HALT;  { irlx: ignore IRL591 }\nENDPROGRAM\n")
-    assert [(d.code, d.place.line_and_column) for d in irlx.check(file)] == [("IRL120", (3, 25))]
+    assert [(d.code, d.place.line_and_column) for d in irlx.check(file)] == [("IRL140", (3, 25))]
     assert irlx.load(file).diagnostics == ()
 
 

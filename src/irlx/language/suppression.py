@@ -99,7 +99,7 @@ def _comments(found: ImportedList) -> Sequence[Span]:
 
 def unused_finding(ignore: Ignore) -> Diagnostic:
     """The finding on a comment that ignores nothing."""
-    return report("IRL120", ignore.place, ignored=ignore.code)
+    return report("IRL140", ignore.place, ignored=ignore.code)
 
 
 def _read(source: SourceText, span: Span) -> Iterator[Ignore | Diagnostic]:
@@ -108,12 +108,12 @@ def _read(source: SourceText, span: Span) -> Iterator[Ignore | Diagnostic]:
     if comment is None:
         return
     if comment["codes"] is None:
-        yield report("IRL123", Place.in_text(source, span), cause="expected irlx: ignore, then codes")
+        yield report("IRL143", Place.in_text(source, span), cause="expected irlx: ignore, then codes")
         return
     line, _ = source.line_and_column(span.start)
     words = list(_WORD.finditer(source.text, *comment.span("codes")))
     if not words:
-        yield report("IRL123", Place.in_text(source, span), cause="it names no code to ignore")
+        yield report("IRL143", Place.in_text(source, span), cause="it names no code to ignore")
     for word in words:
         yield _asked(word[0], line, Place.in_text(source, Span(*word.span())))
 
@@ -122,7 +122,7 @@ def _asked(word: str, line: int, place: Place) -> Ignore | Diagnostic:
     code = word.upper()
     entry = CATALOGUE.get(code)
     if entry is None:
-        return report("IRL122", place, unknown=word, near=near_matches(code, sorted(CATALOGUE)))
+        return report("IRL142", place, unknown=word, near=near_matches(code, sorted(CATALOGUE)))
     if entry.severity is Severity.ERROR:
-        return report("IRL121", place, ignored=code)
+        return report("IRL141", place, ignored=code)
     return Ignore(code, line, place)

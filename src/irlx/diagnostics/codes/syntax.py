@@ -34,21 +34,21 @@ SYNTAX: tuple[Code, ...] = (
     error("IRL117", "the file holds no program", "begin it with PROGRAM name;"),
     error("IRL118", "{what} nested deeper than {limit} levels", "use variables for parts, or procedures"),
     warning(
-        "IRL120",
+        "IRL140",
         "nothing on this line gives {ignored}: the comment ignores nothing",
         "remove the code; a comment ignores what begins on its own line",
     ),
     warning(
-        "IRL121", "{ignored} is an error and cannot be ignored", "remove the code, and repair what it says"
+        "IRL141", "{ignored} is an error and cannot be ignored", "remove the code, and repair what it says"
     ),
-    warning("IRL122", "no message has the code {unknown}{near}", "irlx explain lists all codes"),
+    warning("IRL142", "no message has the code {unknown}{near}", "irlx explain lists all codes"),
     warning(
-        "IRL123",
+        "IRL143",
         "this comment to irlx is not understood: {cause}",
         "write {{ irlx: ignore IRL205 }}, several codes with commas between",
     ),
     error(
-        "IRL124",
+        "IRL144",
         "the formatter would not keep {what}; the text stays as it was",
         "this is a fault of irlx, not of your program; please report it with the program",
     ),

@@ -24,7 +24,7 @@ _ROUNDS = 6
 def format_source(text: str, name: str = "<text>") -> str:
     """The text of a program, module or data list in irlx's form.
 
-    Raises IrlxError: with all findings of the syntax where the text has errors, IRL124 where the result would
+    Raises IrlxError: with all findings of the syntax where the text has errors, IRL144 where the result would
     not mean the same, lose a comment, or change when formatted again. `name` is how findings name the text.
     """
     ends = "\r\n" if text.partition("\n")[0].endswith("\r") else "\n"
@@ -75,4 +75,4 @@ def _laid_out(source: SourceText) -> str:
 
 
 def _given_up(source: SourceText, what: str) -> IrlxError:
-    return IrlxError(report("IRL124", Place(source.name), what=what))
+    return IrlxError(report("IRL144", Place(source.name), what=what))
