@@ -63,8 +63,8 @@ CASES = {
     ],
     "{ one\nx := ;\ny := 3;\n{ two }\ny := ;": [
         "3:1 IRL110 comment without end",
-        "4:5 IRL101 expected a value, found ';'",
-        "7:5 IRL101 expected a value, found ';'",
+        "4:6 IRL101 expected a value, found ';'",
+        "7:6 IRL101 expected a value, found ';'",
     ],
     "RETURN\nx := 5;": ["3:7 IRL102 missing ';' after the RETURN"],
     "RETURN\nr[2] := 5;": ["3:7 IRL102 missing ';' after the RETURN"],
