@@ -2,10 +2,11 @@
 
     python benchmarks/front_end.py [--lines N] [--rounds N] [--json]
 
-The program is long and as people write them (`tests/support/long_programs.py`). The stages take turns within
-a round, so that a drift of the machine's speed meets all alike; best and median of the rounds are given. Lines/s
-count the time that the process computes; `parse` contains the lexing and the tree, `analysis` all that `irlx
-check` does without a cell. The cold check is a process of its own, from its start to its end, on 1,000 lines.
+The program is long and as people write them (`tests/support/long_programs.py`). The stages take turns
+within a round, so that a drift of the machine's speed meets all alike; best and median of the rounds are
+given. Lines/s count the time that the process computes; `parse` contains the lexing and the tree, `analysis`
+all that `irlx check` does without a cell. The cold check is a process of its own, from start to end, on
+1,000 lines.
 """
 
 from __future__ import annotations
