@@ -23,7 +23,7 @@ SYNTAX = [
     ("", 1, "p.irl:1:1: error IRL117: the file holds no program"),
     (b"PROGRAM p;\0\1\2", 1, "p.irl: byte 10: error IRL131: not a text file: NUL byte at offset 10"),
     (b"PROGRAM p; { \xfc }", 1, "p.irl: byte 13: error IRL130: not UTF-8 text: byte 0xFC at offset 13"),
-    ("PROGRAM p;\nBEGIN\n  MOVE LIN (1, 2;\nENDPROGRAM", 1, "p.irl:3:17: error IRL101: expected "),
+    ("PROGRAM p;\nBEGIN\n  MOVE LIN (1, 2;\nENDPROGRAM", 1, "p.irl:3:17: error IRL120: missing "),
     ("PROGRAM p;\nBEGIN\n  MOVE LIN nowhere;\nENDPROGRAM", 1, "p.irl:3:12: error IRL201: unknown name"),
 ]
 

@@ -146,8 +146,8 @@ FAULTS = {
     ),
     "syntax": (
         lists_content(b"DATALIST points;\n  POSITION near := (1, 2, 3);\nENDDATALIST"),
-        "points.dat:2:12: error IRL101: expected ':', found the name 'near'\n"
-        " 2 |   POSITION near := (1, 2, 3);\n   |            ^^^^\n",
+        "points.dat:2:11: error IRL120: missing ':' before the name 'near'\n"
+        " 2 |   POSITION near := (1, 2, 3);\n   |           ^\n",
     ),
 }
 

@@ -13,7 +13,7 @@ PAGES = Path(__file__).parents[2] / "docs" / "diagnostics"
 
 # Line, column and message that the bad program of the page gives, and nothing else.
 MESSAGES = {
-    "IRL101": (4, 14, "expected ',' or ')', found ';'"),
+    "IRL101": (4, 12, "expected a value, found ';'"),
     "IRL102": (4, 14, "missing ';' after the MOVE"),
     "IRL103": (4, 14, "missing ';' after the CYCLICSTART"),
     "IRL104": (4, 11, "missing THEN after the condition of IF"),
@@ -31,6 +31,13 @@ MESSAGES = {
     "IRL116": (1, 1, "expected PROGRAM, MODULE or DATALIST at the start, found the keyword BEGIN"),
     "IRL117": (1, 1, "the file holds no program"),
     "IRL118": (4, 108, "parentheses nested deeper than 100 levels"),
+    "IRL120": (2, 9, "missing ':' before the name 'x'"),
+    "IRL121": (4, 3, "'CYCLICSTRAT' is no word of the language; did you mean CYCLICSTART?"),
+    "IRL122": (4, 9, "',' found where ';' has to end the assignment"),
+    "IRL123": (4, 8, "'==' is not known here"),
+    "IRL124": (4, 9, "',' inside a number"),
+    "IRL125": (6, 3, "ELSE IF begins a second IF, and there is no ENDIF for it"),
+    "IRL126": (4, 3, "this comment holds the beginning of another one, in line 6"),
     "IRL140": (4, 34, "nothing on this line gives IRL205: the comment ignores nothing"),
     "IRL141": (4, 46, "IRL203 is an error and cannot be ignored"),
     "IRL142": (3, 18, "no message has the code IRL2O5; did you mean 'IRL425' or 'IRL245' or 'IRL225'?"),

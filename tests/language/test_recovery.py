@@ -23,6 +23,49 @@ CASES = {
     "MOVE LIN p\nMOVE LIN q;": ["3:11 " + MOVE_SEMICOLON],
     "MOVE LIN p,\n  q\n  SPEED := 5;": [],
     "MOVE LIN p WITH CRITERION c\n  depth := 5;": [],
+    "MOVE LIN p SPEED := 5,\nx := 5;": ["3:22 IRL122 ',' found where ';' has to end the MOVE"],
+    "MOVE LIN p,\nMOVE LIN q;": ["3:11 IRL122 ',' found where ';' has to end the MOVE"],
+    "MOVE LIN p SPEED := 0,5;": ["3:22 IRL124 ',' inside a number"],
+    "MOVE LIN p SPED := 5;": [
+        "3:12 IRL203 MOVE has no parameter 'SPED'; did you mean 'SPEED' or 'SPEED_PTP' or 'SPEED_ORI'?"
+    ],
+    "CYCLICSTRAT;\nCYCLICEND;": [
+        "3:1 IRL121 'CYCLICSTRAT' is no word of the language; did you mean CYCLICSTART?"
+    ],
+    "FREEZSTART 1, 2;\nFREEZEEND;": [
+        "3:1 IRL121 'FREEZSTART' is no word of the language; did you mean FREEZESTART?"
+    ],
+    "OBSTACEL box;\nOBSTACLEEND box;": [
+        "3:1 IRL121 'OBSTACEL' is no word of the language; did you mean OBSTACLE?"
+    ],
+    "MOVE LIN p WITH JOINTLMIT p, q;": [
+        "3:17 IRL121 'JOINTLMIT' is no word of the language; did you mean JOINTLIMIT?"
+    ],
+    "x := 5; // don't\ny := 6;": ["3:9 IRL123 '//' is not known here"],
+    "x := 5; /* first\nsecond */ y := 6;": ["3:9 IRL123 '/*' is not known here"],
+    "a := x => y;": ["3:8 IRL123 '=>' is not known here"],
+    "IF x = 1 && a THEN\n  y := 1;\nENDIF;": ["3:10 IRL123 '&&' is not known here"],
+    "WRITELN(„text“);": ["3:9 IRL123 the quote „ is not known here"],
+    "IF a THEN\n  x := 1;\nELSE IF b THEN\n  y := 1;\nELSE IF a THEN\n  x := 2;\nELSE\n  y := 2;\nENDIF;": [
+        "5:1 IRL125 ELSE IF begins a second IF, and there is no ENDIF for it",
+        "7:1 IRL125 ELSE IF begins a second IF, and there is no ENDIF for it",
+    ],
+    "IF a THEN\n  x := 1;\nELSE IF b THEN\n  y := 1;\nENDIF;\nENDIF;": [],
+    "CASE x OF\n  WHEN 1:\n    IF a THEN\n      y := 1;\n  WHEN 2:\n    y := 2;\nENDCASE;": [
+        "7:3 IRL107 missing ENDIF for the IF of line 5, found the keyword WHEN"
+    ],
+    "WHILE a DO\n  x := 1;\nEND WHILE;": [
+        "5:1 IRL121 'END' is no word of the language; did you mean ENDWHILE?"
+    ],
+    "{ one\n  line more\nx := 1;": ["3:1 IRL110 comment without end"],
+    "{ one\nx := 1;\n{ two }\ny := 2;": [
+        "3:1 IRL126 this comment holds the beginning of another one, in line 5"
+    ],
+    "{ one\nx := ;\ny := 3;\n{ two }\ny := ;": [
+        "3:1 IRL110 comment without end",
+        "4:6 IRL101 expected a value, found ';'",
+        "7:6 IRL101 expected a value, found ';'",
+    ],
     "RETURN\nx := 5;": ["3:7 IRL102 missing ';' after the RETURN"],
     "RETURN\nr[2] := 5;": ["3:7 IRL102 missing ';' after the RETURN"],
     "x := 5\ny := 6;": ["3:7 IRL102 missing ';' after the assignment"],
@@ -44,12 +87,12 @@ CASES = {
     "x y;": ["3:2 IRL102 missing ';' after the call of 'x'"],
     "MOVE p;": ["3:6 IRL101 expected CIRCLE, LIN, PTP or SPLINE, found the name 'p'"],
     "MOVE LIN;": ["3:9 IRL101 expected a value, found ';'"],
-    "WAIT 5;": ["3:7 IRL101 expected SEC, found ';'"],
-    "x := (1;\ny := 2;": ["3:8 IRL101 expected ',' or ')', found ';'"],
-    "x := r[1;": ["3:9 IRL101 expected ',' or ']', found ';'"],
-    "x := 1);": ["3:7 IRL101 expected ';', found ')'"],
+    "WAIT 5;": ["3:7 IRL120 missing SEC before ';'"],
+    "x := (1;\ny := 2;": ["3:8 IRL120 missing ')' before ';'"],
+    "x := r[1;": ["3:9 IRL120 missing ']' before ';'"],
+    "x := 1);": ["3:7 IRL108 ')' without '('"],
     "a < b;": ["3:3 IRL101 expected ':=', '(' or ';', found '<'"],
-    "FOR x 1 TO 3 DO\n  y := 1;\nENDFOR;\ny := 2;": ["3:7 IRL101 expected ':=', found the number 1"],
+    "FOR x 1 TO 3 DO\n  y := 1;\nENDFOR;\ny := 2;": ["3:6 IRL120 missing ':=' before the number 1"],
     "FOR x := 1 TO DO\n  y := 1;\nENDFOR;": ["3:15 IRL101 expected a value, found the keyword DO"],
     "IF a b THEN\n  y := 1;\nELSE\n  y := 2;\nENDIF;": ["3:6 IRL101 expected THEN, found the name 'b'"],
     "CASE x OF\nWHEN 1 2: y := 1;\nWHEN 3: y := 2;\nENDCASE;": [
@@ -85,16 +128,16 @@ WHOLE = {
     "PROGRAM t\nBEGIN ENDPROGRAM": ["1:10 IRL102 missing ';' after the PROGRAM"],
     "PROGRAM t; VAR REAL: begin; BEGIN ENDPROGRAM": ["1:22 IRL106 BEGIN is a keyword and cannot be a name"],
     "PROGRAM t;\nVAR REAL a;\n  INT: b;\nBEGIN b := 1; ENDPROGRAM": [
-        "2:10 IRL101 expected ':', found the name 'a'"
+        "2:9 IRL120 missing ':' before the name 'a'"
     ],
     "PROGRAM t;\nTYPE RECORD REAL a; ENDRECORD = X;\nVAR X: b;\nBEGIN ENDPROGRAM": [
-        "2:18 IRL101 expected ':', found the name 'a'"
+        "2:17 IRL120 missing ':' before the name 'a'"
     ],
     "PROGRAM t;\nTYPE RECORD REAL: a; ENDRECORD X;\nVAR X: b;\nBEGIN ENDPROGRAM": [
-        "2:32 IRL101 expected '=', found the name 'X'"
+        "2:31 IRL120 missing '=' before the name 'X'"
     ],
     "PROGRAM t;\nPROCEDURE p(INT x; INT: y);\nBEGIN\nENDPROC;\nBEGIN p; ENDPROGRAM": [
-        "2:17 IRL101 expected ':', found the name 'x'"
+        "2:16 IRL120 missing ':' before the name 'x'"
     ],
     "PROGRAM t;\nBEGIN\n  HALT;\n": [
         "4:1 IRL107 missing ENDPROGRAM for the PROGRAM of line 1, found the end of the file"

@@ -28,7 +28,7 @@ _DIGEST_SIZE = hashlib.sha256().digest_size
 class _KeepForParser:
     """Names the terminals that no rule mentions; the parser takes them out of the stream itself."""
 
-    always_accept = ("COMMENT", "WRONG_CHARACTER")
+    always_accept = ("COMMENT", "WRONG_CHARACTER", "FOREIGN_COMMENT", "FOREIGN_SIGN", "FOREIGN_QUOTES")
 
     def process(self, stream: Iterator[Token]) -> Iterator[Token]:
         """Leaves the stream as it is."""

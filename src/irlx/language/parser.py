@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 from lark import Token
@@ -10,10 +11,14 @@ from irlx.diagnostics import Diagnostic, SourceText, Span
 from irlx.language.builtins import MOVE_PARAMETERS
 from irlx.language.lexing import Lexed, lex
 from irlx.language.parsing.blocks import BRANCH_WORDS, CLOSERS, PART_WORDS
-from irlx.language.parsing.driver import Driver, ParseStopped
+from irlx.language.parsing.driver import MAX_ERRORS, Driver, ParseStopped
+from irlx.language.parsing.indentation import Hints, read_indentation
 from irlx.language.parsing.machine import END
+from irlx.language.parsing.missing_ends import follow_hints
+from irlx.language.parsing.misspelling import misspelt_alone
 from irlx.language.parsing.nesting import too_deep
 from irlx.language.parsing.recovery import close_all, missing_semicolon, recover
+from irlx.language.parsing.repairs import ends_with_comma, is_decimal_comma
 from irlx.language.tree import DataList, Module, Program
 
 __all__ = ["Parse", "parse"]
@@ -32,53 +37,131 @@ class Parse:
     complete: bool
 
 
+_NO_HINTS = Hints()
+_DOUBT = re.compile(r"(?:(?!\}|\*\))[\s\S])*")
+_LINES_FOR_A_MISTAKE = 5
+_STRUCTURE = frozenset({"IRL107", "IRL108"})
+_ANY_NUMBER = 10 * MAX_ERRORS
+
+
 def parse(source: SourceText) -> Parse:
-    """Parse a text; never raises."""
-    lexed = lex(source)
+    """Parse a text; never raises.
+
+    Where there are mistakes, comments that hold the beginning of another one are ended early if code comes
+    to light; where blocks do not fit each other, the text is read again as its indentation shows them.
+    """
+    found = _attempt(source, lex(source))
+    if found.errors and found.lexed.doubtful:
+        other = _attempt(source, lex(source, trust_comments=False))
+        if _is_code(source, other):
+            found = other
+    if any(finding.code in _STRUCTURE for finding in found.driver.findings):
+        hints = read_indentation(found.driver.tokens)
+        if hints:
+            guided = _attempt(source, found.lexed, hints)
+            if hints.trustworthy or guided.errors <= found.errors:
+                found = guided
+    return found.result()
+
+
+@dataclass(frozen=True)
+class _Attempt:
+    """One reading of a text; `errors` counts the mistakes the parser met."""
+
+    lexed: Lexed
+    driver: Driver
+    told: tuple[Diagnostic, ...]
+
+    @property
+    def errors(self) -> int:
+        return sum(finding.is_error for finding in self.told)
+
+    def result(self) -> Parse:
+        lexed, driver = self.lexed, self.driver
+        findings = _first_errors([*lexed.findings, *self.told])
+        complete = driver.complete and not lexed.torn
+        complete = complete and not any(finding.is_error for finding in findings)
+        return Parse(driver.machine.result, findings, lexed.comments, complete)
+
+
+def _is_code(source: SourceText, attempt: _Attempt) -> bool:
+    """Whether what was in doubtful comments before is code: few mistakes for its length."""
+    in_doubt = [_lines(source, _DOUBT.match(source.text, span.end)) for span in attempt.lexed.torn]
+    lines = sum(len(exposed) for exposed in in_doubt)
+    errors = sum(any(f.place and f.place.line in exposed for exposed in in_doubt) for f in attempt.told)
+    return errors <= 1 + lines // _LINES_FOR_A_MISTAKE
+
+
+def _lines(source: SourceText, exposed: re.Match[str] | None) -> range:
+    """Numbers of the lines behind the first one of a stretch of text."""
+    if exposed is None:
+        return range(0)
+    first, last = (source.line_and_column(offset)[0] for offset in exposed.span())
+    return range(first + 1, last + 1)
+
+
+def _attempt(source: SourceText, lexed: Lexed, hints: Hints = _NO_HINTS) -> _Attempt:
     driver = Driver(source, lexed.tokens)
     try:
-        _run(driver)
+        _run(driver, hints)
     except ParseStopped:
         close_all(driver)
     tree = driver.machine.result
     deep = too_deep(tree, driver) if tree is not None else None
     if deep is not None:
-        tree = None
+        driver.machine.result = None
         driver.findings.append(deep)
-    findings = (*lexed.findings, *_without_consequences(lexed, driver))
-    complete = driver.complete and not any(finding.is_error for finding in findings)
-    return Parse(tree, findings, lexed.comments, complete)
+    return _Attempt(lexed, driver, tuple(_without_consequences(lexed, driver)))
+
+
+def _first_errors(findings: list[Diagnostic]) -> tuple[Diagnostic, ...]:
+    """Findings in the order of the text, no more errors than one wants to read."""
+    findings.sort(key=lambda f: f.place.span.start if f.place is not None and f.place.span else 0)
+    errors = 0
+    kept: list[Diagnostic] = []
+    for finding in findings:
+        errors += finding.is_error
+        if errors > MAX_ERRORS or len(kept) > _ANY_NUMBER:
+            break
+        kept.append(finding)
+    return tuple(kept)
 
 
 def _without_consequences(lexed: Lexed, driver: Driver) -> list[Diagnostic]:
     """Findings of the parser without those that follow from a mistake found before.
 
-    A comment without end makes the text end early; a sign without meaning tears its line apart.
+    A comment without end and a sign without meaning tear their lines apart.
     """
-    end = len(driver.source.text) if any(f.code == "IRL110" for f in lexed.findings) else None
-    torn = {f.place.line for f in lexed.findings if f.code == "IRL112" and f.place}
+    text = driver.source
+    torn: set[int] = set()
+    for span in lexed.torn:
+        first, last = (text.line_and_column(offset)[0] for offset in (span.start, span.end))
+        torn.update(range(first, last + 1))
+        # What such a comment has swallowed at the end of the text is not missing.
+        if not text.text[span.end :].strip():
+            torn.add(text.line_count)
 
     def stands_alone(finding: Diagnostic) -> bool:
-        place = finding.place
-        if place is None or place.span is None:
-            return True
-        return place.line not in torn and (end is None or place.span.start < end)
+        return finding.place is None or finding.place.line not in torn
 
-    return [finding for finding in driver.findings if stands_alone(finding)]
+    return [finding for finding in driver.findings if stands_alone(finding)] if torn else driver.findings
 
 
-def _run(driver: Driver) -> None:
-    machine, tokens = driver.machine, driver.tokens
+def _run(driver: Driver, hints: Hints) -> None:
+    machine, tokens, guided = driver.machine, driver.tokens, bool(hints)
     while True:
+        if guided and follow_hints(driver, hints):
+            continue
         token = tokens[driver.index]
-        if token.type == "NAME" and driver.head in _OPEN_ENDED and _begins_statement(driver):
-            missing_semicolon(driver)
+        kind = token.type
+        if kind in _LOOKED_AT and _looked_at(driver, kind):
+            continue
         # A word that ends a block makes the machine reduce the block even where the word is wrong,
         # and what has been reduced cannot be continued.
-        if token.type in _REDUCING and not machine.accepts(token.type):
+        if kind in _REDUCING and not machine.accepts(kind):
             recover(driver)
         elif machine.feed(token):
-            if token.type == END:
+            if kind == END:
                 return
             driver.shifted(token)
             driver.index += 1
@@ -88,6 +171,45 @@ def _run(driver: Driver) -> None:
 
 _REDUCING = PART_WORDS | BRANCH_WORDS | frozenset(CLOSERS.values()) | {END}
 _OPEN_ENDED = frozenset({"MOVE", "MOVE_INC", "RETURN"})
+_LOOKED_AT = frozenset({"NAME", "SEMICOLON", "COMMA"})
+
+
+def _looked_at(driver: Driver, kind: str) -> bool:
+    """Mistakes that the grammar lets pass; True where the parse has moved on."""
+    if kind == "NAME":
+        previous = driver.previous
+        if previous is not None and previous.type == "COMMA":
+            return driver.depth == 0 and driver.on_new_line and _new_after_comma(driver)
+        if driver.head in _OPEN_ENDED and _begins_statement(driver):
+            missing_semicolon(driver)
+    elif kind == "SEMICOLON":
+        alone = (
+            driver.head == "NAME" and driver.index == driver.statement_index + 1 and not driver.at_boundary
+        )
+        return alone and driver.machine.accepts(kind) and misspelt_alone(driver)
+    elif (
+        driver.head in _OPEN_ENDED and driver.depth == 0 and _after_value(driver) and is_decimal_comma(driver)
+    ):
+        driver.index += 2
+        return True
+    return False
+
+
+def _new_after_comma(driver: Driver) -> bool:
+    """Whether a name on a new line begins something of its own although a comma stands before it."""
+    following = driver.following.type
+    if driver.head in ("MOVE", "MOVE_INC") and following == "ASSIGN":
+        new = not _may_be_parameter(driver)
+    elif driver.head in ("MOVE", "MOVE_INC"):
+        new = _is_assignment(driver.tokens, driver.index)
+    else:
+        new = following == "COLON" and driver.head not in ("WHEN", "CASE")
+    return new and ends_with_comma(driver)
+
+
+def _after_value(driver: Driver) -> bool:
+    """Whether the token before is the whole value of a parameter: ``SPEED := 0``."""
+    return driver.index > 1 and driver.tokens[driver.index - 2].type == "ASSIGN"
 
 
 def _begins_statement(driver: Driver) -> bool:
@@ -97,16 +219,22 @@ def _begins_statement(driver: Driver) -> bool:
     if driver.head == "RETURN":
         return _is_assignment(driver.tokens, driver.index)
     if driver.following.type == "ASSIGN":
-        if any(token.type == "CRITERION" for token in driver.statement_tokens):
-            return False
-        return driver.token.casefold() not in MOVE_PARAMETERS
+        return not _may_be_parameter(driver)
     return True
 
 
-def _is_assignment(tokens: tuple[Token, ...], index: int) -> bool:
+def _may_be_parameter(driver: Driver) -> bool:
+    """Whether ``name :=`` may be a parameter of the MOVE before it, or of a criterion in it."""
+    if any(token.type == "CRITERION" for token in driver.statement_tokens):
+        return True
+    return driver.token.casefold() in MOVE_PARAMETERS
+
+
+def _is_assignment(tokens: list[Token], index: int) -> bool:
     """Whether the tokens from a name on are a designator and ``:=``."""
     depth = 0
-    for token in tokens[index + 1 :]:
+    for position in range(index + 1, len(tokens)):
+        token = tokens[position]
         if token.type == "LEFT_BRACKET":
             depth += 1
         elif token.type == "RIGHT_BRACKET":

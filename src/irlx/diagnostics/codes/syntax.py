@@ -33,6 +33,21 @@ SYNTAX: tuple[Code, ...] = (
     ),
     error("IRL117", "the file holds no program", "begin it with PROGRAM name;"),
     error("IRL118", "{what} nested deeper than {limit} levels", "use variables for parts, or procedures"),
+    error("IRL120", "missing {word} before {found}", "write {word} here"),
+    error("IRL121", "'{name}' is no word of the language; did you mean {word}?", "write {word}"),
+    error("IRL122", "',' found where ';' has to end {construct}", "write ';' between statements"),
+    error("IRL123", "{found} is not known here", "{instead}"),
+    error("IRL124", "',' inside a number", "numbers are written with a decimal point: {number}"),
+    error(
+        "IRL125",
+        "ELSE IF begins a second IF, and there is no ENDIF for it",
+        "write ELSIF for another condition of the same IF",
+    ),
+    warning(
+        "IRL126",
+        "this comment holds the beginning of another one, in line {line}",
+        "comments do not nest; close this one before, or write another sign in it",
+    ),
     warning(
         "IRL140",
         "nothing on this line gives {ignored}: the comment ignores nothing",

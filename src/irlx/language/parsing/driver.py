@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from typing import Any
 
 from lark import Token
@@ -33,16 +34,19 @@ class Driver:
     def __init__(self, source: SourceText, tokens: Sequence[Token]) -> None:
         length = len(source.text)
         self.source = source
-        self.tokens = (*tokens, Token(END, "", start_pos=length, end_pos=length, line=0))
+        # Misspelt keywords are put right in this list.
+        self.tokens = [*tokens, Token(END, "", start_pos=length, end_pos=length, line=0)]
         self.index = 0
         self.machine = Machine()
         self.blocks: list[Token] = []
         self.findings: list[Diagnostic] = []
+        self.errors = 0
         self.complete = True
         self.at_boundary = True
         self.statement_index = 0
         self.head = ""
         self.depth = 0
+        self.keywords_as_names: set[str] = set()
         self._checkpoint: Snapshot = self.machine.snapshot()
         self._checkpoint_blocks: tuple[Token, ...] = ()
 
@@ -75,6 +79,32 @@ class Driver:
     def statement_tokens(self) -> Sequence[Token]:
         """Tokens since the last boundary between statements."""
         return self.tokens[self.statement_index : self.index]
+
+    @cached_property
+    def declared_words(self) -> frozenset[str]:
+        """Casefolded names of everything that may be called: routines of the text, and what it imports."""
+        found, importing = set(), False
+        for before, token in zip(self.tokens, self.tokens[1:], strict=False):
+            importing = before.type == "IMPORT" or (importing and token.type != "SEMICOLON")
+            if importing or before.type in ("PROCEDURE", "FUNCTION"):
+                found.add(token.casefold())
+        return frozenset(found)
+
+    def accepts_at_start(self, *kinds: str) -> bool:
+        """Whether terminals of these kinds would fit where the present statement begins."""
+        return self.machine.accepts_from(self._checkpoint, *kinds)
+
+    def replace_start(self, kind: str) -> None:
+        """Put a keyword in place of the first token of the present statement, and go back to it."""
+        self.roll_back()
+        self.index = self.statement_index
+        self.replace(kind)
+
+    def replace(self, kind: str) -> None:
+        """Put a keyword in place of the next token."""
+        old = self.token
+        position = {"start_pos": old.start_pos, "end_pos": old.end_pos, "line": old.line}
+        self.tokens[self.index] = Token(kind, str(old), column=old.column, **position)
 
     def shifted(self, token: Token) -> None:
         """Keep track of a token that the machine has taken."""
@@ -146,7 +176,8 @@ class Driver:
         """Add a finding; stops the parse at the limit of errors."""
         finding = report(code, self.place(span), related=related, **data)
         self.findings.append(finding)
-        if sum(one.is_error for one in self.findings) >= MAX_ERRORS:
+        self.errors += finding.is_error
+        if self.errors >= MAX_ERRORS:
             raise ParseStopped
 
     def place(self, span: Span) -> Place:

@@ -16,8 +16,20 @@ __all__ = ["END", "Machine", "Snapshot"]
 
 END = "$END"
 
-_Reduction: TypeAlias = tuple["Callable[[list[Any]], Any] | None", int, str]
-_Row: TypeAlias = "dict[str, int | _Reduction]"
+_Reduction: TypeAlias = tuple[Callable[[list[Any]], Any] | None, int, str]
+_Row: TypeAlias = dict[str, int | _Reduction]
+
+
+class _Rows(dict[int, _Row]):
+    """Rows by state, made when they are first asked for."""
+
+    def __init__(self, make: Callable[[int], _Row]) -> None:
+        super().__init__()
+        self._make = make
+
+    def __missing__(self, state: int) -> _Row:
+        row = self[state] = self._make(state)
+        return row
 
 
 class _Tables:
@@ -31,19 +43,16 @@ class _Tables:
         self._conf = state.parse_conf
         self.start: int = self._conf.start_state
         self.end: int = self._conf.end_state
-        self._rows: dict[int, _Row] = {}
+        self.rows = _Rows(self._row)
+        self.chains: dict[tuple[int, int, str], int] = {}
 
-    def row(self, state: int) -> _Row:
+    def _row(self, state: int) -> _Row:
         """Actions of a state by terminal, and its successors by rule."""
-        row = self._rows.get(state)
-        if row is None:
-            actions = self._conf.states[state]
-            row = {
-                symbol: argument if action is Shift else self._reduction(argument)
-                for symbol, (action, argument) in actions.items()
-            }
-            self._rows[state] = row
-        return row
+        actions = self._conf.states[state]
+        return {
+            symbol: argument if action is Shift else self._reduction(argument)
+            for symbol, (action, argument) in actions.items()
+        }
 
     def _reduction(self, rule: Any) -> _Reduction:
         size = len(rule.expansion)
@@ -72,48 +81,74 @@ class Machine:
 
     def __init__(self) -> None:
         self._tables = _tables()
+        self._rows = self._tables.rows
         self._states = [self._tables.start]
         self._values: list[Any] = []
         self.result: Any = None
 
     def feed(self, token: Token) -> bool:
         """Take one token; False, with only reductions done, when it does not fit."""
-        states, values, row_of = self._states, self._values, self._tables.row
+        states, values, rows = self._states, self._values, self._rows
         kind = token.type
-        row = row_of(states[-1])
+        row = rows[states[-1]]
         while True:
             action = row.get(kind)
             if action is None:
-                return False
+                if kind != END or states[-1] != self._tables.end:
+                    return False
+                self.result = values[-1]
+                return True
             if type(action) is int:
                 states.append(action)
                 values.append(token)
                 return True
             build, size, name = action  # type: ignore[misc]
             if build is None:
-                states.pop()
-            elif size:
+                row = rows[self._after_unit_rules(kind)]
+                continue
+            if size:
                 children = values[-size:]
                 del states[-size:]
                 del values[-size:]
                 values.append(build(children))
             else:
                 values.append(build([]))
-            state = row_of(states[-1])[name]
+            state = rows[states[-1]][name]
             states.append(state)  # type: ignore[arg-type]
-            if state == self._tables.end and kind == END:
-                self.result = values[-1]
-                return True
-            row = row_of(state)  # type: ignore[arg-type]
+            row = rows[state]  # type: ignore[index]
+
+    def _after_unit_rules(self, kind: str) -> int:
+        """Reduce by the unit rules that a terminal asks for, which leave the value; gives the state then.
+
+        From a name to an expression there are nine of them, so what they lead to is kept.
+        """
+        states, rows = self._states, self._rows
+        key = (states[-2], states[-1], kind)
+        state = self._tables.chains.get(key)
+        if state is None:
+            below, state, _ = key
+            while True:
+                action = rows[state].get(kind)
+                if action is None or isinstance(action, int) or action[0] is not None:
+                    break
+                state = rows[below][action[2]]  # type: ignore[assignment]
+            self._tables.chains[key] = state
+        states[-1] = state
+        return state
 
     def accepts(self, *kinds: str) -> bool:
         """Whether terminals of these kinds would fit, one after the other; changes nothing."""
         states = list(self._states)
         return all(self._advance(states, kind) for kind in kinds)
 
+    def accepts_from(self, snapshot: Snapshot, *kinds: str) -> bool:
+        """Whether terminals of these kinds would fit after going back to a snapshot; changes nothing."""
+        states = list(snapshot.states)
+        return all(self._advance(states, kind) for kind in kinds)
+
     def _advance(self, states: list[int], kind: str) -> bool:
         while True:
-            action = self._tables.row(states[-1]).get(kind)
+            action = self._rows[states[-1]].get(kind)
             if action is None:
                 return False
             if isinstance(action, int):
@@ -122,7 +157,7 @@ class Machine:
             _, size, name = action
             if size:
                 del states[-size:]
-            successor = self._tables.row(states[-1])[name]
+            successor = self._rows[states[-1]][name]
             assert isinstance(successor, int)
             states.append(successor)
             if kind == END and successor == self._tables.end:
@@ -130,8 +165,13 @@ class Machine:
 
     def expected(self) -> frozenset[str]:
         """Kinds of all terminals that would fit next."""
-        kinds = self._tables.row(self._states[-1])
+        kinds = self._rows[self._states[-1]]
         return frozenset(kind for kind in kinds if kind.isupper() and self.accepts(kind))
+
+    @property
+    def last(self) -> Any:
+        """What lies on top of the stack: the token taken last, or the node it was reduced to."""
+        return self._values[-1] if self._values else None
 
     def snapshot(self, without_last: int = 0) -> Snapshot:
         """The stacks, leaving out the tokens taken last."""

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 
-from lark import Token
-
-from irlx.diagnostics import Related, Span
+from irlx.diagnostics import Span
 from irlx.language.lexing import is_open_string, token_span
 from irlx.language.parsing.blocks import (
     BRANCH_WORDS,
@@ -18,32 +16,37 @@ from irlx.language.parsing.blocks import (
 )
 from irlx.language.parsing.driver import Driver, ParseStopped
 from irlx.language.parsing.machine import END
+from irlx.language.parsing.missing_ends import (
+    branch_of_outer_block,
+    close_block,
+    end_of_file,
+    missing_end_of_record,
+    missing_end_of_routine,
+    wrong_end_word,
+)
+from irlx.language.parsing.misspelling import end_of_something, misspelt_here, misspelt_start
+from irlx.language.parsing.repairs import (
+    comma_for_semicolon,
+    decimal_comma,
+    equals_for_assignment,
+    keyword_as_name,
+    missing_begin,
+    missing_parentheses,
+    missing_then_or_do,
+    missing_token,
+    superfluous_token,
+)
 from irlx.language.parsing.wording import construct, expected_words, found_words
 
-__all__ = ["missing_semicolon", "recover"]
+__all__ = ["close_all", "missing_semicolon", "recover"]
 
 _COMPARISONS = frozenset({"EQUAL", "UNEQUAL", "LESS", "GREATER", "LESS_EQUAL", "GREATER_EQUAL"})
-_OPENER_OF = {closer: opener for opener, closer in CLOSERS.items()}
-_MISTAKABLE = frozenset({"IF", "FOR", "WHILE", "CASE"})
-_RESUMING = STATEMENT_WORDS | PART_WORDS | BRANCH_WORDS | _OPENER_OF.keys()
+_RESUMING = STATEMENT_WORDS | PART_WORDS | BRANCH_WORDS | frozenset(CLOSERS.values())
 
 
 def recover(driver: Driver) -> None:
     """Make the parse go on after the machine refused the next token; raises ParseStopped where it cannot."""
-    strategies = (
-        _open_string,
-        _equals_for_assignment,
-        _chained_comparison,
-        _missing_semicolon_before,
-        _missing_then_or_do,
-        _missing_end_of_routine,
-        _wrong_end_word,
-        _keyword_as_name,
-        _text_after_end,
-        _no_program,
-        _end_of_file,
-    )
-    for strategy in strategies:
+    for strategy in _STRATEGIES:
         if strategy(driver):
             return
     expected = expected_words(driver.machine.expected())
@@ -76,16 +79,6 @@ def _open_string(driver: Driver) -> bool:
     return True
 
 
-def _equals_for_assignment(driver: Driver) -> bool:
-    if driver.token.type != "EQUAL" or not driver.machine.accepts("ASSIGN"):
-        return False
-    driver.report("IRL105", token_span(driver.token))
-    sign = driver.token
-    driver.take(Token("ASSIGN", ":=", start_pos=sign.start_pos, end_pos=sign.end_pos, line=sign.line))
-    driver.index += 1
-    return True
-
-
 def _chained_comparison(driver: Driver) -> bool:
     if driver.token.type not in _COMPARISONS or not driver.machine.accepts("AND"):
         return False
@@ -102,118 +95,6 @@ def _missing_semicolon_before(driver: Driver) -> bool:
     if same_line_name and not driver.machine.accepts("SEMICOLON", kind, driver.following.type):
         return False
     missing_semicolon(driver)
-    return True
-
-
-def _missing_then_or_do(driver: Driver) -> bool:
-    kind = driver.token.type
-    if kind != "NAME" and kind not in STATEMENT_WORDS:
-        return False
-    same_line_name = kind == "NAME" and not driver.on_new_line
-    after = (driver.following.type,) if same_line_name else ()
-    for word in ("THEN", "DO"):
-        if driver.machine.accepts(word, kind, *after):
-            end = driver.previous_end
-            driver.report("IRL104", Span(end, end), word=word, head=driver.head)
-            driver.insert(word)
-            return True
-    return False
-
-
-def _missing_end_of_routine(driver: Driver) -> bool:
-    """A routine whose END is missing before the next routine or the main BEGIN."""
-    if driver.token.type not in ("BEGIN", "PROCEDURE", "FUNCTION") or not driver.blocks:
-        return False
-    opener = driver.blocks[-1].type
-    if opener not in ("PROCEDURE", "FUNCTION") or not driver.machine.accepts(CLOSERS[opener]):
-        return False
-    _report_missing_end(driver)
-    return _close_block(driver)
-
-
-def _wrong_end_word(driver: Driver) -> bool:
-    """An END word that does not fit the innermost block: another END is missing, or it is one too many."""
-    kind = driver.token.type
-    if kind not in _OPENER_OF or not (driver.at_boundary or driver.machine.accepts("SEMICOLON")):
-        return False
-    openers = [block.type for block in driver.blocks]
-    if _OPENER_OF[kind] not in openers:
-        stands_for_another = openers and openers[-1] in _MISTAKABLE and not _is_closed_later(driver)
-        if stands_for_another:
-            _report_missing_end(driver)
-            _close_block(driver)
-        else:
-            driver.report("IRL108", token_span(driver.token), word=kind, opener=_OPENER_OF[kind])
-        driver.complete = False
-        driver.index += 1
-        if driver.at_boundary and driver.token.type == "SEMICOLON":
-            driver.index += 1
-        return True
-    if openers[-1] == _OPENER_OF[kind]:
-        return False
-    _report_missing_end(driver)
-    if not _close_block(driver):
-        raise ParseStopped
-    return True
-
-
-def _is_closed_later(driver: Driver) -> bool:
-    """Whether the innermost block has its END further on."""
-    opener = driver.blocks[-1].type
-    depth = 0
-    for token in driver.tokens[driver.index :]:
-        if token.type in ("ENDPROC", "ENDFCT", "ENDPROGRAM"):
-            return False
-        depth += (token.type == opener) - (token.type == CLOSERS[opener])
-        if depth < 0:
-            return True
-    return False
-
-
-def _report_missing_end(driver: Driver) -> None:
-    opener = driver.blocks[-1]
-    line, _ = driver.source.line_and_column(opener.start_pos or 0)
-    related = Related(f"the {opener.type} that it has to close", driver.place(token_span(opener)))
-    driver.report(
-        "IRL107",
-        token_span(driver.token),
-        related=(related,),
-        closer=CLOSERS[opener.type],
-        opener=opener.type,
-        line=line,
-        found=found_words(driver.token),
-    )
-    driver.complete = False
-
-
-def _close_block(driver: Driver) -> bool:
-    """Put the END of the innermost block where it is missing; False where it does not fit."""
-    if not driver.at_boundary and driver.machine.accepts("SEMICOLON"):
-        driver.insert("SEMICOLON")
-    opener = driver.blocks[-1].type
-    kinds = {"REPEAT": ("UNTIL", "TRUE"), "RECORD": ("ENDRECORD", "EQUAL", "NAME")}.get(
-        opener, (CLOSERS[opener],)
-    )
-    if not driver.machine.accepts(*kinds) and driver.machine.accepts("BEGIN", *kinds):
-        kinds = ("BEGIN", *kinds)
-    if not driver.machine.accepts(*kinds):
-        return False
-    driver.insert(*kinds)
-    if driver.machine.accepts("SEMICOLON") and driver.blocks:
-        driver.insert("SEMICOLON")
-    return True
-
-
-def _keyword_as_name(driver: Driver) -> bool:
-    token = driver.token
-    if token.type in ("NAME", END) or not token[0].isalpha() or driver.on_new_line:
-        return False
-    if not driver.machine.accepts("NAME", driver.following.type):
-        return False
-    driver.report("IRL106", token_span(token), word=token.type)
-    driver.complete = False
-    driver.take(Token("NAME", "", start_pos=token.start_pos, end_pos=token.end_pos, line=token.line))
-    driver.index += 1
     return True
 
 
@@ -235,13 +116,30 @@ def _no_program(driver: Driver) -> bool:
     raise ParseStopped
 
 
-def _end_of_file(driver: Driver) -> bool:
-    if driver.token.type != END or not driver.blocks:
-        return False
-    if not (driver.at_boundary or driver.machine.accepts("SEMICOLON")):
-        return False
-    _report_missing_end(driver)
-    raise ParseStopped
+_STRATEGIES = (
+    _open_string,
+    end_of_something,
+    misspelt_here,
+    misspelt_start,
+    equals_for_assignment,
+    _chained_comparison,
+    decimal_comma,
+    comma_for_semicolon,
+    _missing_semicolon_before,
+    missing_then_or_do,
+    missing_begin,
+    missing_end_of_record,
+    missing_token,
+    missing_parentheses,
+    missing_end_of_routine,
+    branch_of_outer_block,
+    wrong_end_word,
+    keyword_as_name,
+    _text_after_end,
+    _no_program,
+    end_of_file,
+    superfluous_token,
+)
 
 
 def close_all(driver: Driver) -> None:
@@ -251,7 +149,7 @@ def close_all(driver: Driver) -> None:
         if not (driver.at_boundary or driver.machine.accepts("SEMICOLON")):
             driver.roll_back()
         with suppress(ParseStopped):
-            while driver.blocks and _close_block(driver):
+            while driver.blocks and close_block(driver):
                 pass
     driver.machine.feed(driver.tokens[-1])
 

@@ -9,7 +9,7 @@ from lark import Token
 from irlx.language.keywords import NAMES_TOO
 from irlx.language.parsing.machine import END
 
-__all__ = ["construct", "expected_words", "found_words"]
+__all__ = ["construct", "expected_words", "found_words", "sign_or_word"]
 
 _SIGNS = {
     "SEMICOLON": "';'",
@@ -62,6 +62,11 @@ def found_words(token: Token) -> str:
     if token[0].isalpha():
         return f"the keyword {token.type}"
     return f"'{token}'"
+
+
+def sign_or_word(kind: str) -> str:
+    """A terminal as a program writes it, for example ``':'`` or ``OF``."""
+    return _SIGNS.get(kind, kind)
 
 
 def expected_words(kinds: Set[str]) -> str:
