@@ -81,7 +81,7 @@ def test_programs_with_other_blanks_and_more_comments(path, data):
 @settings(RELAXED, max_examples=4)
 @given(data=st.data())
 def test_blanks_alone_do_not_show(path, data):
-    """Without comments, a line end and a blank are the same, but where the text breaks a list."""
+    """However many blanks stand between the words, the same text comes out, within the margin."""
     text = path.read_text(encoding="utf-8")
     words = [str(token) for token in lex(source_text("t.irl", text)).tokens]
     blanks = data.draw(st.lists(st.sampled_from([" ", "  ", "\t"]), min_size=len(words), max_size=len(words)))
