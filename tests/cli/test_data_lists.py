@@ -145,7 +145,9 @@ FAULTS = {
         "  p.irl:2:17: imported here\n 2 | IMPORT DATALIST points;\n",
     ),
     "syntax": (
-        lists_content(b"DATALIST points;\n  POSITION near := (1, 2, 3);\nENDDATALIST"),
+        lists_content(
+            b"DATALIST points;\n  POSITION near := (1, 2, 3);\n  POSITION: home; REAL: pace;\nENDDATALIST"
+        ),
         "points.dat:2:11: error IRL120: missing ':' before the name 'near'\n"
         " 2 |   POSITION near := (1, 2, 3);\n   |           ^\n",
     ),

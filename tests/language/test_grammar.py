@@ -82,6 +82,14 @@ def test_cache_folder_that_cannot_be_made(fresh, tmp_path):
     assert _parses(grammar.load_grammar())
 
 
+@pytest.mark.req("LANG-76")
+@pytest.mark.skipif(not Path("/proc/self").is_dir(), reason="no folder that not even root can write to")
+def test_read_only_home(fresh):
+    fresh.delenv("XDG_CACHE_HOME", raising=False)
+    fresh.setenv("HOME", "/proc/self")
+    assert _parses(grammar.load_grammar())
+
+
 @pytest.mark.parametrize("home", ["", None, "relative"])
 def test_no_home(fresh, home):
     fresh.delenv("XDG_CACHE_HOME", raising=False)

@@ -204,9 +204,22 @@ def test_speed_of_the_front_end():
     source = source_text("big.irl", text)
     times = []
     for _ in range(3):
-        start = time.perf_counter()
+        start = time.process_time()
         analysis = analyse(source)
-        times.append(time.perf_counter() - start)
+        times.append(time.process_time() - start)
     assert not analysis.diagnostics
-    # The aim is 5,000 lines/s; the bound leaves room for a machine that does other work.
-    assert source.line_count / min(times) > 2_000
+    # Computing time, so that other work on the machine counts little; benchmarks/front_end.py says more.
+    assert source.line_count / min(times) > 5_000
+
+
+@pytest.mark.req("LANG-76")
+def test_a_cold_check(tmp_path):
+    (tmp_path / "long.irl").write_text(long_program(1000), encoding="utf-8")
+    times = []
+    for _ in range(3):
+        start = time.perf_counter()
+        command = [sys.executable, "-m", "irlx", "check", "long.irl"]
+        subprocess.run(command, cwd=tmp_path, capture_output=True, check=True)
+        times.append(time.perf_counter() - start)
+    # The aim is 0.5 s; a machine that does other work, or keeps no bytecode, may take three times as long.
+    assert min(times) < 1.5

@@ -80,7 +80,6 @@ class _Attempt:
         lexed, driver = self.lexed, self.driver
         findings = _first_errors([*lexed.findings, *self.told])
         complete = driver.complete and not lexed.torn
-        complete = complete and not any(finding.is_error for finding in findings)
         return Parse(driver.machine.result, findings, lexed.comments, complete)
 
 
