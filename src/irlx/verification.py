@@ -9,7 +9,14 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from irlx.blocks import AskPosture, AskPostureOf, Block
+from irlx.blocks import (
+    AskManipulability,
+    AskNearestPosture,
+    AskPose,
+    AskPosture,
+    AskPostureOf,
+    Block,
+)
 from irlx.cell.cell import Cell
 from irlx.cell.find import is_file
 from irlx.cell.load import load_cell
@@ -158,13 +165,24 @@ def _replayed(program: Program, cell: Cell, outline: Outline) -> Iterator[Block]
         except StopIteration:
             return
         reply = None
-        if isinstance(item, AskPostureOf):
+        if isinstance(item, AskPostureOf | AskNearestPosture):
             # Which posture a pose has is for the machine to say, and no stream tells.
             raise Unanswerable
         if isinstance(item, AskPosture):
             records = outline.records
             row = records[done].tick if done < len(records) else outline.rows - 1
             reply = outline.posture(row)
+        elif isinstance(item, AskPose | AskManipulability):
+            reply = _of_posture(item, cell)
         else:
             done += 1
             yield item
+
+
+def _of_posture(question: AskPose | AskManipulability, cell: Cell) -> tuple[float, ...]:
+    """What the robot's model says of a posture."""
+    # Imported here: few programs ask, and the model loads a library that verification does without.
+    from irlx.pacing.answers import answer_of_posture
+    from irlx.robot.kinematics import Kinematics
+
+    return answer_of_posture(question, Kinematics(cell.robot))
