@@ -25,7 +25,7 @@ def check(program: PathLike, cell: PathLike | None = None) -> list[Diagnostic]:
         return list(error.diagnostics)
     found = list(analysis.diagnostics)
     if isinstance(analysis.tree, tree.Program):
-        found += unsupported(analysis.tree, analysis.source, analysis.data_lists)
+        found += unsupported(analysis.tree, analysis.source, analysis.data_lists, analysis.modules)
     return found + _cell_findings(cell) if cell is not None else found
 
 

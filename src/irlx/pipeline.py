@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from math import inf
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any
 
 import numpy as np
@@ -21,7 +21,7 @@ from irlx.cell.load import load_cell
 from irlx.cell.setting import setting_of
 from irlx.diagnostics import Diagnostic, IrlxError, Place, Span, report
 from irlx.diagnostics.diagnostic import near_matches
-from irlx.interpreter.interpret import interpret
+from irlx.interpreter.interpret import MAX_STEPS, interpret
 from irlx.pacing.explanation import TickExplanation
 from irlx.pacing.explanation import explain_tick as explain_row
 from irlx.pacing.pacer import Pacer, PacingSetup
@@ -49,13 +49,14 @@ LONGEST_TICK_MS = LONGEST_TICK * 1e3
 class Job:
     """A program and the cell it runs in, checked against each other; tick in ns.
 
-    A move may take `max_slow` times as long as programmed.
+    A move may take `max_slow` times as long as programmed; `max_steps` statements may be executed.
     """
 
     program: Program
     cell: Cell
     tick_ns: int
     max_slow: float = inf
+    max_steps: int = MAX_STEPS
 
 
 def prepare(
@@ -63,11 +64,12 @@ def prepare(
     cell: PathLike | None = None,
     tick_ms: float | None = None,
     max_slow: float | None = None,
+    max_steps: int | None = None,
 ) -> Job:
     """Load what a run needs.
 
     `cell` None: the file that SYSTEM SPECIFICATION names, else the program's own name with .toml.
-    Raises ProgramError, CellError, or IrlxError with IRL006 for a tick or `max_slow` out of range.
+    Raises ProgramError, CellError, or IrlxError with IRL006 for a number out of range.
     """
     if not isinstance(program, Program):
         program = _loaded(program, cell)
@@ -76,12 +78,15 @@ def prepare(
         cause = "a move cannot be faster than programmed: at least 1"
         raise IrlxError(report("IRL006", option="--max-slow", value=f"{max_slow:g}", cause=cause))
     slowest = inf if max_slow is None else max_slow
+    steps = MAX_STEPS if max_steps is None else max_steps
+    if steps < 1:
+        raise IrlxError(report("IRL006", option="--max-steps", value=f"{steps}", cause="at least 1"))
     if tick_ms is None:
-        return Job(program, loaded, loaded.tick_ns, slowest)
+        return Job(program, loaded, loaded.tick_ns, slowest, steps)
     if not LEAST_TICK_MS <= tick_ms <= LONGEST_TICK_MS:
         cause = f"a tick lasts {LEAST_TICK_MS:g} to {LONGEST_TICK_MS:g} ms"
         raise IrlxError(report("IRL006", option="--tick", value=f"{tick_ms:g}", cause=cause))
-    return Job(program, loaded, round(tick_ms * 1e6), slowest)
+    return Job(program, loaded, round(tick_ms * 1e6), slowest, steps)
 
 
 def _loaded(path: PathLike, cell: PathLike | None) -> Program:
@@ -116,6 +121,8 @@ class Execution:
         )
         self.kinematics = setup.kinematics
         self._pacer = Pacer(setup, self._locate)
+        texts = (job.program.source, *(module.source for module in job.program.modules))
+        self._texts = {PurePath(text.name).name: text for text in texts}
 
     def __iter__(self) -> Iterator[Executed]:
         """Execute the program block by block. Raises IrlxError where it cannot go on (IRL090: by a fault)."""
@@ -153,7 +160,10 @@ class Execution:
     def _blocks(self, answer: Callable[[Question], tuple[float, ...]]) -> Iterator[Block]:
         """Blocks as the interpreter yields them, its questions answered on the way."""
         job, program = self.job, self.job.program
-        source = interpret(program.tree, program.source, setting_of(job.cell), program.data_lists)
+        setting = setting_of(job.cell)
+        source = interpret(
+            program.tree, program.source, setting, program.data_lists, program.modules, job.max_steps
+        )
         reply = None
         while True:
             try:
@@ -185,7 +195,8 @@ class Execution:
         return self._pacer.warnings
 
     def _locate(self, origin: Origin) -> Place:
-        return Place.in_text(self.job.program.source, Span(origin.start, origin.end))
+        text = self._texts.get(origin.file, self.job.program.source)
+        return Place.in_text(text, Span(origin.start, origin.end))
 
 
 def kinematics_of(cell: Cell) -> Kinematics:
@@ -246,16 +257,18 @@ def run(
     progress: Progress | None = None,
     explain_tick: int | None = None,
     max_slow: float | None = None,
+    max_steps: int | None = None,
 ) -> Run:
     """Interpret a program, move its robot, and return the joint stream.
 
     `cell`: path of the cell file, by default found beside the program; `tick_ms` overrides the
     cell's tick; `explain_tick` asks for `Run.explanation` of that tick; a move that limits make
-    more than `max_slow` times as long as programmed is an error. Raises ProgramError and
+    more than `max_slow` times as long as programmed is an error, and so are more than `max_steps`
+    statements (by default 10,000,000). Raises ProgramError and
     CellError before anything moves, RunError (with what was executed until then) once it does,
     RunInterrupted on Ctrl-C.
     """
-    job = prepare(program, cell, tick_ms, max_slow)
+    job = prepare(program, cell, tick_ms, max_slow, max_steps)
     return execute(job, progress, explain_tick)
 
 
@@ -291,13 +304,14 @@ def stream(
     cell: PathLike | None = None,
     tick_ms: float | None = None,
     max_slow: float | None = None,
+    max_steps: int | None = None,
 ) -> Iterator[Sample]:
     """Samples of a run, one after another, motion by motion as they are asked for.
 
     The same samples as `run` gives. Iteration may stop at any sample. What cannot be prepared raises
     here, what goes wrong in motion at the sample it keeps from coming, as IrlxError.
     """
-    return _samples(prepare(program, cell, tick_ms, max_slow))
+    return _samples(prepare(program, cell, tick_ms, max_slow, max_steps))
 
 
 def _samples(job: Job) -> Iterator[Sample]:

@@ -5,7 +5,7 @@ receiving the answers. All of them are frozen, serialisable, in SI units (m, rad
 numbered from 1 in the robot's order.
 """
 
-from irlx.blocks.block import Block, HaltBlock, Origin
+from irlx.blocks.block import Block, HaltBlock, Origin, PauseBlock
 from irlx.blocks.criterion import CriterionBlock, CriterionChoice, CriterionClause, CriterionParam
 from irlx.blocks.move import ArcCourse, JointTarget, MotionLaw, MoveBlock, MoveKind, PoseTarget
 from irlx.blocks.options import (
@@ -16,11 +16,21 @@ from irlx.blocks.options import (
     LimitKind,
     LimitSwitchBlock,
 )
-from irlx.blocks.questions import AskPosture, AskPostureOf, Question
+from irlx.blocks.questions import (
+    AskManipulability,
+    AskNearestPosture,
+    AskPose,
+    AskPosture,
+    AskPostureOf,
+    Question,
+)
 from irlx.blocks.reconfigure import ReconfigureBlock
 
 __all__ = [
     "ArcCourse",
+    "AskManipulability",
+    "AskNearestPosture",
+    "AskPose",
     "AskPosture",
     "AskPostureOf",
     "Block",
@@ -40,6 +50,7 @@ __all__ = [
     "MoveBlock",
     "MoveKind",
     "Origin",
+    "PauseBlock",
     "PoseTarget",
     "Question",
     "ReconfigureBlock",

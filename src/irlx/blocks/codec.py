@@ -14,7 +14,7 @@ from functools import cache
 from math import isfinite
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
-from irlx.blocks.block import Block, HaltBlock
+from irlx.blocks.block import Block, HaltBlock, PauseBlock
 from irlx.blocks.criterion import CriterionBlock
 from irlx.blocks.move import MoveBlock
 from irlx.blocks.options import CyclicBlock, FreezeBlock, LimitSwitchBlock
@@ -26,6 +26,7 @@ BLOCK_TYPES: dict[str, type[Block]] = {
         MoveBlock,
         ReconfigureBlock,
         HaltBlock,
+        PauseBlock,
         LimitSwitchBlock,
         FreezeBlock,
         CyclicBlock,

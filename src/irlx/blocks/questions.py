@@ -30,4 +30,36 @@ class AskPostureOf:
     orientation: tuple[float, float, float, float] | None
 
 
-Question = AskPosture | AskPostureOf
+@dataclass(frozen=True)
+class AskNearestPosture:
+    """Which posture of this pose, within limits and frozen joints in force, is nearest to `near` (rad, m)?
+
+    Pose and answer as in AskPostureOf.
+    """
+
+    origin: Origin
+    position: tuple[float, float, float]
+    orientation: tuple[float, float, float, float] | None
+    near: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class AskPose:
+    """Which pose has the tool in this posture (rad, m)?
+
+    Answer: position, m, and unit quaternion x, y, z, w: seven numbers.
+    """
+
+    origin: Origin
+    posture: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class AskManipulability:
+    """How freely can the tool move in this posture (rad, m)? Answer: one number, as MANIPULABILITY has it."""
+
+    origin: Origin
+    posture: tuple[float, ...]
+
+
+Question = AskPosture | AskPostureOf | AskNearestPosture | AskPose | AskManipulability

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import singledispatch
 from math import degrees
 
-from irlx.blocks.block import Block, HaltBlock
+from irlx.blocks.block import Block, HaltBlock, PauseBlock
 from irlx.blocks.criterion import CriterionBlock, CriterionChoice
 from irlx.blocks.move import JointTarget, MotionLaw, MoveBlock, MoveKind, PoseTarget
 from irlx.blocks.options import CyclicBlock, FreezeBlock, JointRange, LimitKind, LimitSwitchBlock
@@ -47,6 +47,11 @@ def _words(block: Block, joint_units: Sequence[str]) -> str:
 @_words.register
 def _(block: HaltBlock, joint_units: Sequence[str]) -> str:
     return "HALT"
+
+
+@_words.register
+def _(block: PauseBlock, joint_units: Sequence[str]) -> str:
+    return "PAUSE"
 
 
 @_words.register

@@ -51,6 +51,12 @@ def add_parser(commands: Any) -> None:
         help="end with IRL525 where limits make a move more than F times as long as programmed",
     )
     parser.add_argument(
+        "--max-steps",
+        type=int,
+        metavar="N",
+        help="end with IRL510 after N statements (default: 10,000,000)",
+    )
+    parser.add_argument(
         "--explain-tick",
         type=int,
         metavar="N",
@@ -115,8 +121,9 @@ def _prepared(options: argparse.Namespace) -> tuple[Job, list[Path]]:
         program = load(options.program, options.cell)
         from irlx.pipeline import prepare
 
-        job = prepare(program, options.cell, options.tick, options.max_slow)
-        inputs = (program.path, Path(job.cell.file), *(found.path for found in program.data_lists))
+        job = prepare(program, options.cell, options.tick, options.max_slow, options.max_steps)
+        read = [*(found.path for found in program.data_lists), *(found.path for found in program.modules)]
+        inputs = (program.path, Path(job.cell.file), *read)
         return job, output_paths(options.output, program.path, inputs)
     except IrlxError as error:
         if options.json:
@@ -203,7 +210,7 @@ def _plain_diagnostics(diagnostics: Iterable[Diagnostic]) -> list[dict[str, obje
 def _verified(path: Path, job: Job) -> Any:
     from irlx.verification import verify
 
-    return verify(path, job.program.path, job.cell.file)
+    return verify(path, job.program.path, job.cell.file, job.max_steps)
 
 
 def _print_summary(

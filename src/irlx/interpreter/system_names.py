@@ -5,7 +5,7 @@ from __future__ import annotations
 from irlx.language import tree
 from irlx.language.builtins import SYSTEM_VARIABLES, is_port_name
 
-LATER_TYPES = frozenset({"char", "character", "file", "semaphore", "signal", "robtarget"})
+LATER_TYPES = frozenset({"file", "semaphore", "signal"})
 """Predefined types that are read only, by casefolded name."""
 
 

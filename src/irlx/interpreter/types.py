@@ -10,7 +10,7 @@ from typing import TypeAlias
 
 @dataclass(frozen=True)
 class Simple:
-    """INT, REAL, BOOL or STRING."""
+    """INT, REAL, BOOL, CHAR or STRING."""
 
     name: str
 
@@ -53,6 +53,7 @@ class Array:
 Type: TypeAlias = Simple | Record | Array
 
 INT, REAL, BOOL, STRING = Simple("INT"), Simple("REAL"), Simple("BOOL"), Simple("STRING")
+CHAR = Simple("CHAR")
 
 
 def _reals(name: str, *fields: str) -> Record:
@@ -86,6 +87,8 @@ def predefined_types(joints: int) -> dict[str, Type]:
         "bool": BOOL,
         "boolean": BOOL,
         "string": STRING,
+        "char": CHAR,
+        "character": CHAR,
         "position": POSITION,
         "orientation": ORIENTATION,
         "pose": POSE,
@@ -94,7 +97,14 @@ def predefined_types(joints: int) -> dict[str, Type]:
         types[key] = _reals(key.upper(), *(pattern.format(number) for number in range(1, joints + 1)))
     types["add_joint"] = ADD_JOINT
     types["joint"] = joint_type(types["main_joint"])
+    types["robtarget"] = robtarget_type(joints)
     return types
+
+
+def robtarget_type(joints: int) -> Record:
+    """ROBTARGET of a robot: a pose, marks of its posture, and one whole number of turns a joint."""
+    turns = Array(((1, joints),), INT)
+    return Record("ROBTARGET", (("PSE", POSE), ("STATUS", INT), ("TURNS", turns), ("A_JOINT", ADD_JOINT)))
 
 
 def joint_type(main: Type) -> Record:

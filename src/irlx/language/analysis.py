@@ -8,14 +8,13 @@ from types import MappingProxyType
 from typing import TypeAlias
 
 from irlx.diagnostics import Diagnostic, Place, SourceText, Span, report
-from irlx.diagnostics.diagnostic import near_matches
 from irlx.language import tree
 from irlx.language.criteria import check_criterion
 from irlx.language.data_lists import DataListResolver, ImportedList, imports_of, in_order
+from irlx.language.modules import ImportedModule, ModuleProblem, missing_exports, no_module
 from irlx.language.moves import check_move
 from irlx.language.names import check_names
 from irlx.language.parser import parse
-from irlx.language.scope import Scope
 from irlx.language.switches import check_freeze, check_switches
 from irlx.language.symbols import Symbol
 
@@ -24,10 +23,13 @@ __all__ = ["Analysis", "CellNames", "DataListResolver", "Resolver", "analyse"]
 _Root: TypeAlias = "tree.Program | tree.Module | tree.DataList"
 
 Resolver: TypeAlias = "Callable[[str], Analysis | None]"
-"""Gives the analysis of a module by the name that FROM uses, or None where there is no such module."""
+"""Gives the analysis of a module by the name that FROM uses, or None where there is no such module.
 
-CellNames: TypeAlias = "Callable[[tree.Program], Collection[str]]"
-"""Gives the names that the cell of a program adds to it, those of its frames."""
+Raises ModuleProblem for one that cannot be used.
+"""
+
+CellNames: TypeAlias = "Callable[[tree.Program | tree.Module], Collection[str]]"
+"""Gives the names that the cell of a program adds to it and its modules, those of its frames."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +38,8 @@ class Analysis:
 
     `tree` is partial after a mistake and None where nothing is left; `symbols` are the program's own
     declarations by casefolded name, `types` the types among them; `comments` are in the order of the text.
-    `data_lists` are those that it imports, in order, as far as they could be read.
+    `data_lists` are those that it imports, in order, as far as they could be read; `modules` all that it
+    needs, each behind those that it imports itself.
     """
 
     source: SourceText
@@ -46,6 +49,7 @@ class Analysis:
     symbols: Mapping[str, Symbol] = field(default_factory=dict)
     types: Mapping[str, Symbol] = field(default_factory=dict)
     data_lists: tuple[ImportedList, ...] = ()
+    modules: tuple[ImportedModule, ...] = ()
 
     @property
     def has_errors(self) -> bool:
@@ -68,12 +72,14 @@ def analyse(
     parsed = parse(source)
     if parsed.tree is None:
         return Analysis(source, None, in_order(parsed.findings, source, ()), parsed.comments)
-    given = cell_names(parsed.tree) if cell_names and isinstance(parsed.tree, tree.Program) else ()
+    given = (
+        cell_names(parsed.tree) if cell_names and isinstance(parsed.tree, tree.Program | tree.Module) else ()
+    )
     imports = imports_of(parsed.tree, source, data_lists)
     scope, findings = check_names(parsed.tree, source, given, imports, complete=parsed.complete)
     findings += _static_findings(parsed.tree, source)
     if resolver is not None:
-        findings += _import_findings(parsed.tree, scope, resolver)
+        findings += _import_findings(parsed.tree, scope.source, resolver)
     if parsed.complete and isinstance(parsed.tree, tree.Program):
         findings += check_switches(parsed.tree, source)
     return Analysis(
@@ -99,29 +105,21 @@ def _static_findings(root: tree.Node, source: SourceText) -> list[Diagnostic]:
     return findings
 
 
-def _import_findings(root: _Root, scope: Scope, resolver: Resolver) -> list[Diagnostic]:
+def _import_findings(root: _Root, source: SourceText, resolver: Resolver) -> list[Diagnostic]:
     findings = []
     for declaration in root.declarations:
         if not isinstance(declaration, tree.ImportFrom) or not declaration.module.key:
             continue
-        module = resolver(declaration.module.name)
+        place = Place.in_text(source, declaration.module.span)
+        try:
+            module = resolver(declaration.module.name)
+        except ModuleProblem as problem:
+            findings.append(report(problem.code, place, **problem.data))
+            continue
         if module is None:
-            place = Place.in_text(scope.source, declaration.module.span)
             findings.append(report("IRL218", place, module=declaration.module.name))
-        elif isinstance(module.tree, tree.Module):
-            findings += _missing_exports(declaration, module, module.tree, scope.source)
-    return findings
-
-
-def _missing_exports(
-    declaration: tree.ImportFrom, module: Analysis, root: tree.Module, source: SourceText
-) -> list[Diagnostic]:
-    exports = [name for d in root.declarations if isinstance(d, tree.Export) for name in d.names]
-    keys = {name.key for name in exports}
-    findings = []
-    for name in declaration.names:
-        if name.key not in keys:
-            near = near_matches(name.name, [export.name for export in exports])
-            place = Place.in_text(source, name.span)
-            findings.append(report("IRL219", place, name=name.name, file=module.source.name, near=near))
+            continue
+        findings += no_module(declaration, module.source, module.tree, source)
+        if isinstance(module.tree, tree.Module):
+            findings += missing_exports(declaration, module.tree, module.source.name, source)
     return findings

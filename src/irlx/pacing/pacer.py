@@ -11,7 +11,10 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from irlx.blocks import (
-    AskPostureOf,
+    AskManipulability,
+    AskNearestPosture,
+    AskPose,
+    AskPosture,
     Block,
     CriterionBlock,
     FreezeBlock,
@@ -29,6 +32,7 @@ from irlx.motion.arc import Arc
 from irlx.motion.plan_joint_line import plan_joint_line
 from irlx.motion.plan_path import PlannedPath, plan_path
 from irlx.motion.whole_ticks import ticks_of_move
+from irlx.pacing.answers import answer_of_posture
 from irlx.pacing.clock import programmed_clock
 from irlx.pacing.conditions import broken_condition, check_can_move, check_conditions, check_targets
 from irlx.pacing.demand import Demand, DemandModifier
@@ -113,11 +117,14 @@ class Pacer:
 
         Raises PacingError, IRL522, for the posture of a pose that none reaches.
         """
-        if isinstance(question, AskPostureOf):
-            in_force = limits_in_force(self._setup.limits, self.options)
-            target = PoseTarget(question.position, question.orientation)
-            return tuple(self._posture_of(target, None, in_force, self._locate(question.origin)).tolist())
-        return tuple(float(value) for value in self.q)
+        if isinstance(question, AskPosture):
+            return tuple(float(value) for value in self.q)
+        if isinstance(question, AskPose | AskManipulability):
+            return answer_of_posture(question, self._setup.kinematics)
+        in_force = limits_in_force(self._setup.limits, self.options)
+        target, place = PoseTarget(question.position, question.orientation), self._locate(question.origin)
+        near = np.array(question.near) if isinstance(question, AskNearestPosture) else None
+        return tuple(self._posture_of(target, near, in_force, place).tolist())
 
     def settled(self, block: Block) -> Block:
         """The block as it is executed here: bounds that mean the present posture lie exactly on it."""
@@ -363,12 +370,14 @@ class Pacer:
         """Posture at which a PTP ends: as given, or the nearest one that reaches the pose."""
         if isinstance(block.target, JointTarget):
             return np.array(block.target.values)
-        return self._posture_of(block.target, block.reconfiguration, in_force, place)
+        konf = block.reconfiguration
+        near = None if konf is None else self._konf(konf, in_force, place)
+        return self._posture_of(block.target, near, in_force, place)
 
     def _posture_of(
-        self, target: PoseTarget, konf: JointTarget | None, in_force: LimitsInForce, place: Place
+        self, target: PoseTarget, near: Array | None, in_force: LimitsInForce, place: Place
     ) -> Array:
-        """The posture of a pose nearest to `konf`, else to that of CYCLICSTART, else to the present one."""
+        """The posture of a pose nearest to `near` (n,), else to CYCLICSTART's, else to the present one."""
         check_can_move(target, self._setup.kinematics, self.q, place)
         rotation, _ = self._setup.kinematics.tool_pose(self.q)
         if target.orientation is not None:
@@ -379,8 +388,8 @@ class Pacer:
             raise PacingError(report("IRL522", place, distance=f"{farthest * 1000.0:.6g}", angle="0"))
         free = self.options.free_joints(self.q.size)
         drawn_to = self.options.cyclic_posture if self.options.cyclic_posture is not None else self.q
-        if konf is not None:
-            drawn_to = self._konf(konf, in_force, place)
+        if near is not None:
+            drawn_to = near
         start = np.where(free, drawn_to, self.q)
         search = nearest_posture(
             self._setup.kinematics,

@@ -16,6 +16,20 @@ RUN = (
     error("IRL505", "{param} must be {expected}, found {value}"),
     error("IRL506", "{function} has no value at {value}"),
     error(
+        "IRL510",
+        "the program has executed {most} statements and goes on; is there a loop without end?",
+        "allow more with --max-steps, or max_steps= in Python",
+    ),
+    error(
+        "IRL511",
+        "{depth} calls wait for each other and their variables hold {values} values; at most {most} calls do",
+        "is there a way out of the recursion?",
+    ),
+    error("IRL512", "a text of {length} characters is too long; at most {most} are kept"),
+    error("IRL513", "this is nested too deeply to be executed", "split it"),
+    error("IRL514", "RETURN {need}"),
+    error("IRL515", "the parameter {name} is the caller's own variable: a value cannot stand for it"),
+    error(
         "IRL520",
         "the tool cannot follow this move beyond {way} of {length} (tick {tick}) at any speed: {held}; "
         "smallest singular value {sigma}; {missing}",

@@ -15,6 +15,7 @@ END = 999
 BLOCK_CODES = {
     "MoveBlock": 300,
     "ReconfigureBlock": 310,
+    "PauseBlock": 380,
     "HaltBlock": 390,
     "LimitSwitchBlock": 410,
     "FreezeBlock": 420,
