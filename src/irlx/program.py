@@ -170,11 +170,11 @@ class _Beside:
         self._done: dict[Path, Analysis] = {}
 
     def __call__(self, name: str) -> Analysis | None:
-        """Analysis of the module of a name, None without a file. Raises ModuleProblem: IRL250, IRL251."""
+        """Analysis of the module of a name, None without a file. Raises ModuleProblem: IRL260, IRL261."""
         path = self._open[0].with_name(f"{name}.irl")
         if path in self._open:
             circle = " imports ".join(file.name for file in [*self._open[self._open.index(path) :], path])
-            raise ModuleProblem("IRL250", module=name, files=circle)
+            raise ModuleProblem("IRL260", module=name, files=circle)
         if path not in self._done:
             try:
                 content = path.read_bytes()
@@ -182,7 +182,7 @@ class _Beside:
                 return None
             except (OSError, ValueError) as cause:
                 words = "it is a folder" if isinstance(cause, IsADirectoryError) else _words(cause)
-                raise ModuleProblem("IRL251", module=name, path=path, cause=words) from None
+                raise ModuleProblem("IRL261", module=name, path=path, cause=words) from None
             self._open.append(path)
             try:
                 self._done[path] = self._analysed(name, path, content)
@@ -194,7 +194,7 @@ class _Beside:
         try:
             source = decode_source(str(path), content)
         except IrlxError as error:
-            raise ModuleProblem("IRL251", module=name, path=path, cause=error.reason.message) from None
+            raise ModuleProblem("IRL261", module=name, path=path, cause=error.reason.message) from None
         analysis = analyse(source, self, lambda _: self.names, self.lists)
         self.findings += analysis.diagnostics
         if isinstance(analysis.tree, tree.Module):

@@ -138,22 +138,22 @@ WRONG = [
             "a_irl": "MODULE a; FROM b IMPORT y; EXPORT x; VAR INT: x; ENDMODULE",
             "b_irl": "MODULE b; FROM a IMPORT x; EXPORT y; VAR INT: y; ENDMODULE",
         },
-        ["b.irl:1:16: error IRL250: module 'a' is imported in a circle: a.irl imports b.irl imports a.irl"],
+        ["b.irl:1:16: error IRL260: module 'a' is imported in a circle: a.irl imports b.irl imports a.irl"],
     ),
     (
         "FROM a IMPORT x;",
         {"a_irl": "MODULE a; FROM a IMPORT x; EXPORT x; ENDMODULE"},
-        ["a.irl:1:16: error IRL250: module 'a' is imported in a circle: a.irl imports a.irl"],
+        ["a.irl:1:16: error IRL260: module 'a' is imported in a circle: a.irl imports a.irl"],
     ),
     (
         "FROM other IMPORT x;",
         {"other_irl": "PROGRAM other; BEGIN ENDPROGRAM"},
-        ["other.irl:1:1: error IRL252: expected a module, found PROGRAM other"],
+        ["other.irl:1:1: error IRL262: expected a module, found PROGRAM other"],
     ),
     (
         "FROM tools IMPORT x;",
         {"tools_irl": "MODULE old; EXPORT x; VAR INT: x; ENDMODULE"},
-        ["tools.irl:1:8: warning IRL253: the module is called 'old' here and 'tools' where it is imported"],
+        ["tools.irl:1:8: warning IRL263: the module is called 'old' here and 'tools' where it is imported"],
     ),
     (
         "FROM tools IMPORT x;",
@@ -180,7 +180,7 @@ def test_a_module_that_is_a_folder(files):
     path = files("FROM tools IMPORT x;", "")
     (path.parent / "tools.irl").mkdir()
     (found,) = irlx.check(path)
-    assert (found.code, found.data["cause"]) == ("IRL251", "it is a folder")
+    assert (found.code, found.data["cause"]) == ("IRL261", "it is a folder")
 
 
 def test_errors_of_a_run_are_told_in_the_module(files, capsys):

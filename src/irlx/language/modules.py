@@ -62,12 +62,12 @@ def no_module(
     name, here = declaration.module, Place.in_text(source, declaration.module.span)
     related = (Related("imported here", here),)
     if root is None:
-        return [report("IRL252", Place(found.name), related=related, found="text that is none")]
+        return [report("IRL262", Place(found.name), related=related, found="text that is none")]
     place = Place.in_text(found, root.name.span)
     if not isinstance(root, tree.Module):
         whole = Place.in_text(found, Span(root.span.start, root.name.span.end))
         words = f"{type(root).__name__.upper()} {root.name.name}"
-        return [report("IRL252", whole, related=related, found=words)]
+        return [report("IRL262", whole, related=related, found=words)]
     if root.name.key and root.name.key != name.key:
-        return [report("IRL253", place, related=related, found=root.name.name, name=name.name)]
+        return [report("IRL263", place, related=related, found=root.name.name, name=name.name)]
     return []

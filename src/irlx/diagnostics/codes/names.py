@@ -26,18 +26,18 @@ NAMES: tuple[Code, ...] = (
     error("IRL217", "EXIT outside of a loop", "EXIT leaves FOR, WHILE or REPEAT; HALT ends the program"),
     error("IRL218", "no module '{module}'", "a module NAME is the file NAME.irl beside the program"),
     error(
-        "IRL250",
+        "IRL260",
         "module '{module}' is imported in a circle: {files}",
         "move what both need into a module of its own",
     ),
-    error("IRL251", "the module '{module}' cannot be read from {path}: {cause}"),
+    error("IRL261", "the module '{module}' cannot be read from {path}: {cause}"),
     error(
-        "IRL252",
+        "IRL262",
         "expected a module, found {found}",
         "a module begins with MODULE name; and ends with ENDMODULE",
     ),
     warning(
-        "IRL253",
+        "IRL263",
         "the module is called '{found}' here and '{name}' where it is imported",
         "write MODULE {name};",
     ),
