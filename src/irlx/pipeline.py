@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from math import inf
 from pathlib import Path
 from typing import Any
@@ -17,6 +17,7 @@ from irlx.blocks import Block, Origin, Question
 from irlx.cell.cell import Cell
 from irlx.cell.errors import CellError
 from irlx.cell.find import is_file
+from irlx.cell.input_file import read_input_file
 from irlx.cell.load import load_cell
 from irlx.cell.setting import setting_of
 from irlx.diagnostics import Diagnostic, IrlxError, Place, Span, report
@@ -24,6 +25,7 @@ from irlx.diagnostics.diagnostic import near_matches
 from irlx.interpreter.interpret import interpret
 from irlx.pacing.explanation import TickExplanation
 from irlx.pacing.explanation import explain_tick as explain_row
+from irlx.pacing.inputs import InputFunction, Inputs
 from irlx.pacing.pacer import Pacer, PacingSetup
 from irlx.pacing.rows import MotionRows
 from irlx.program import Program, ProgramError, cell_path, load
@@ -38,6 +40,9 @@ from irlx.streams.sample import Sample
 
 Array = NDArray[np.float64]
 PathLike = str | os.PathLike[str]
+InputsGiven = InputFunction | Mapping[str, Sequence[tuple[float, float]]] | PathLike | None
+"""A function of name and time (s), traces by name (times in s with the value from each on), or a CSV file."""
+
 Progress = Callable[[Block, float], None]
 """Called after each block with the block and the simulated time so far, s."""
 
@@ -49,13 +54,14 @@ LONGEST_TICK_MS = LONGEST_TICK * 1e3
 class Job:
     """A program and the cell it runs in, checked against each other; tick in ns.
 
-    A move may take `max_slow` times as long as programmed.
+    A move may take `max_slow` times as long as programmed; `inputs` are the cell's with those of the caller.
     """
 
     program: Program
     cell: Cell
     tick_ns: int
     max_slow: float = inf
+    inputs: Inputs = field(default_factory=Inputs)
 
 
 def prepare(
@@ -63,6 +69,7 @@ def prepare(
     cell: PathLike | None = None,
     tick_ms: float | None = None,
     max_slow: float | None = None,
+    inputs: InputsGiven = None,
 ) -> Job:
     """Load what a run needs.
 
@@ -76,12 +83,29 @@ def prepare(
         cause = "a move cannot be faster than programmed: at least 1"
         raise IrlxError(report("IRL006", option="--max-slow", value=f"{max_slow:g}", cause=cause))
     slowest = inf if max_slow is None else max_slow
+    said = inputs_of(loaded, inputs)
     if tick_ms is None:
-        return Job(program, loaded, loaded.tick_ns, slowest)
+        return Job(program, loaded, loaded.tick_ns, slowest, said)
     if not LEAST_TICK_MS <= tick_ms <= LONGEST_TICK_MS:
         cause = f"a tick lasts {LEAST_TICK_MS:g} to {LONGEST_TICK_MS:g} ms"
         raise IrlxError(report("IRL006", option="--tick", value=f"{tick_ms:g}", cause=cause))
-    return Job(program, loaded, round(tick_ms * 1e6), slowest)
+    return Job(program, loaded, round(tick_ms * 1e6), slowest, said)
+
+
+def inputs_of(cell: Cell, given: InputsGiven) -> Inputs:
+    """What inputs say: first `given`, a function, traces by name or the path of a CSV; else the cell.
+
+    Raises CellError for a file that is no such CSV.
+    """
+    if callable(given):
+        return Inputs(cell.inputs, given)
+    if isinstance(given, str | os.PathLike):
+        return Inputs({**cell.inputs, **read_input_file(Path(given))})
+    own = {
+        name.casefold(): tuple((float(at), float(value)) for at, value in trace)
+        for name, trace in (given or {}).items()
+    }
+    return Inputs({**cell.inputs, **own})
 
 
 def _loaded(path: PathLike, cell: PathLike | None) -> Program:
@@ -112,7 +136,7 @@ class Execution:
         cell = job.cell
         dt = job.tick_ns / 1e9
         setup = PacingSetup(
-            kinematics_of(cell), cell.limits, cell.weights, cell.start, dt, max_slow=job.max_slow
+            kinematics_of(cell), cell.limits, cell.weights, cell.start, dt, (), job.max_slow, job.inputs
         )
         self.kinematics = setup.kinematics
         self._pacer = Pacer(setup, self._locate)
@@ -246,16 +270,18 @@ def run(
     progress: Progress | None = None,
     explain_tick: int | None = None,
     max_slow: float | None = None,
+    inputs: InputsGiven = None,
 ) -> Run:
     """Interpret a program, move its robot, and return the joint stream.
 
     `cell`: path of the cell file, by default found beside the program; `tick_ms` overrides the
     cell's tick; `explain_tick` asks for `Run.explanation` of that tick; a move that limits make
-    more than `max_slow` times as long as programmed is an error. Raises ProgramError and
+    more than `max_slow` times as long as programmed is an error; `inputs` as `InputsGiven`, in place of
+    the cell's. Raises ProgramError and
     CellError before anything moves, RunError (with what was executed until then) once it does,
     RunInterrupted on Ctrl-C.
     """
-    job = prepare(program, cell, tick_ms, max_slow)
+    job = prepare(program, cell, tick_ms, max_slow, inputs)
     return execute(job, progress, explain_tick)
 
 
@@ -291,13 +317,14 @@ def stream(
     cell: PathLike | None = None,
     tick_ms: float | None = None,
     max_slow: float | None = None,
+    inputs: InputsGiven = None,
 ) -> Iterator[Sample]:
     """Samples of a run, one after another, motion by motion as they are asked for.
 
     The same samples as `run` gives. Iteration may stop at any sample. What cannot be prepared raises
     here, what goes wrong in motion at the sample it keeps from coming, as IrlxError.
     """
-    return _samples(prepare(program, cell, tick_ms, max_slow))
+    return _samples(prepare(program, cell, tick_ms, max_slow, inputs))
 
 
 def _samples(job: Job) -> Iterator[Sample]:

@@ -9,7 +9,15 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from irlx.blocks import AskPosture, AskPostureOf, Block
+from irlx.blocks import (
+    AskInput,
+    AskInputChange,
+    AskPosture,
+    AskPostureOf,
+    Block,
+    InputBlock,
+    WaitBlock,
+)
 from irlx.cell.cell import Cell
 from irlx.cell.find import is_file
 from irlx.cell.load import load_cell
@@ -147,6 +155,19 @@ def _program_check(program: Program, cell: Cell | None, may_lack_blocks: bool, o
     return Check("program", FAILED if findings else OK, detail="; ".join(findings) or unsaid)
 
 
+def _recorded(question: AskInput | AskInputChange, outline: Outline, done: int) -> tuple[float, ...]:
+    """What the stream says of inputs, `done` of its blocks being behind: what was read, how long was waited.
+
+    Raises Unanswerable where the next block is neither.
+    """
+    block = outline.records[done].block if done < len(outline.records) else None
+    if isinstance(question, AskInput) and isinstance(block, InputBlock):
+        return (block.value,)
+    if isinstance(question, AskInputChange) and isinstance(block, WaitBlock):
+        return (block.duration,)
+    raise Unanswerable
+
+
 def _replayed(program: Program, cell: Cell, outline: Outline) -> Iterator[Block]:
     """Blocks of a program whose questions are answered by the stream: nothing moves."""
     source = interpret(program.tree, program.source, setting_of(cell), program.data_lists)
@@ -165,6 +186,8 @@ def _replayed(program: Program, cell: Cell, outline: Outline) -> Iterator[Block]
             records = outline.records
             row = records[done].tick if done < len(records) else outline.rows - 1
             reply = outline.posture(row)
+        elif isinstance(item, AskInput | AskInputChange):
+            reply = _recorded(item, outline, done)
         else:
             done += 1
             yield item

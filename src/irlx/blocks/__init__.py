@@ -16,11 +16,14 @@ from irlx.blocks.options import (
     LimitKind,
     LimitSwitchBlock,
 )
-from irlx.blocks.questions import AskPosture, AskPostureOf, Question
+from irlx.blocks.questions import AskInput, AskInputChange, AskPosture, AskPostureOf, Question
 from irlx.blocks.reconfigure import ReconfigureBlock
+from irlx.blocks.signal import InputBlock, Port, SignalBlock, SignalKind, WaitBlock
 
 __all__ = [
     "ArcCourse",
+    "AskInput",
+    "AskInputChange",
     "AskPosture",
     "AskPostureOf",
     "Block",
@@ -31,6 +34,7 @@ __all__ = [
     "CyclicBlock",
     "FreezeBlock",
     "HaltBlock",
+    "InputBlock",
     "JointRange",
     "JointTarget",
     "LimitClause",
@@ -40,7 +44,11 @@ __all__ = [
     "MoveBlock",
     "MoveKind",
     "Origin",
+    "Port",
     "PoseTarget",
     "Question",
     "ReconfigureBlock",
+    "SignalBlock",
+    "SignalKind",
+    "WaitBlock",
 ]

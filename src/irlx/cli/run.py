@@ -51,6 +51,9 @@ def add_parser(commands: Any) -> None:
         help="end with IRL525 where limits make a move more than F times as long as programmed",
     )
     parser.add_argument(
+        "--inputs", metavar="CSV", help="what inputs say: lines of time in s, input, value (else the cell's)"
+    )
+    parser.add_argument(
         "--explain-tick",
         type=int,
         metavar="N",
@@ -115,8 +118,9 @@ def _prepared(options: argparse.Namespace) -> tuple[Job, list[Path]]:
         program = load(options.program, options.cell)
         from irlx.pipeline import prepare
 
-        job = prepare(program, options.cell, options.tick, options.max_slow)
+        job = prepare(program, options.cell, options.tick, options.max_slow, options.inputs)
         inputs = (program.path, Path(job.cell.file), *(found.path for found in program.data_lists))
+        inputs += () if options.inputs is None else (Path(options.inputs),)
         return job, output_paths(options.output, program.path, inputs)
     except IrlxError as error:
         if options.json:
