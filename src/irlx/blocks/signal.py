@@ -44,8 +44,8 @@ class InputBlock(Block):
 class WaitBlock(Block):
     """The robot stands for `duration` s, rounded up to whole ticks.
 
-    `condition` is what the program waits for, in its words, or empty where it waits for the time alone. It looks
-    again after each wait, so that one statement may have several.
+    `condition` is what the program waits for, in its words, or empty where it waits for the time alone. It
+    looks again after each wait, so that one statement may have several.
     """
 
     duration: float
