@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from math import inf
 from pathlib import Path, PurePath
 from typing import Any
@@ -17,6 +17,7 @@ from irlx.blocks import Block, Origin, Question
 from irlx.cell.cell import Cell
 from irlx.cell.errors import CellError
 from irlx.cell.find import is_file
+from irlx.cell.input_file import read_input_file
 from irlx.cell.load import load_cell
 from irlx.cell.setting import setting_of
 from irlx.diagnostics import Diagnostic, IrlxError, Place, Span, report
@@ -24,6 +25,7 @@ from irlx.diagnostics.diagnostic import near_matches
 from irlx.interpreter.interpret import MAX_STEPS, interpret
 from irlx.pacing.explanation import TickExplanation
 from irlx.pacing.explanation import explain_tick as explain_row
+from irlx.pacing.inputs import InputFunction, Inputs
 from irlx.pacing.pacer import Pacer, PacingSetup
 from irlx.pacing.rows import MotionRows
 from irlx.program import Program, ProgramError, cell_path, load
@@ -38,6 +40,9 @@ from irlx.streams.sample import Sample
 
 Array = NDArray[np.float64]
 PathLike = str | os.PathLike[str]
+InputsGiven = InputFunction | Mapping[str, Sequence[tuple[float, float]]] | PathLike | None
+"""A function of name and time (s), traces by name (times in s with the value from each on), or a CSV file."""
+
 Progress = Callable[[Block, float], None]
 """Called after each block with the block and the simulated time so far, s."""
 
@@ -49,7 +54,8 @@ LONGEST_TICK_MS = LONGEST_TICK * 1e3
 class Job:
     """A program and the cell it runs in, checked against each other; tick in ns.
 
-    A move may take `max_slow` times as long as programmed; `max_steps` statements may be executed.
+    A move may take `max_slow` times as long as programmed, the program may execute `max_steps` statements;
+    `inputs` are the cell's with those of the caller.
     """
 
     program: Program
@@ -57,6 +63,7 @@ class Job:
     tick_ns: int
     max_slow: float = inf
     max_steps: int = MAX_STEPS
+    inputs: Inputs = field(default_factory=Inputs)
 
 
 def prepare(
@@ -65,6 +72,7 @@ def prepare(
     tick_ms: float | None = None,
     max_slow: float | None = None,
     max_steps: int | None = None,
+    inputs: InputsGiven = None,
 ) -> Job:
     """Load what a run needs.
 
@@ -78,15 +86,32 @@ def prepare(
         cause = "a move cannot be faster than programmed: at least 1"
         raise IrlxError(report("IRL006", option="--max-slow", value=f"{max_slow:g}", cause=cause))
     slowest = inf if max_slow is None else max_slow
+    said = inputs_of(loaded, inputs)
     steps = MAX_STEPS if max_steps is None else max_steps
     if steps < 1:
         raise IrlxError(report("IRL006", option="--max-steps", value=f"{steps}", cause="at least 1"))
     if tick_ms is None:
-        return Job(program, loaded, loaded.tick_ns, slowest, steps)
+        return Job(program, loaded, loaded.tick_ns, slowest, steps, said)
     if not LEAST_TICK_MS <= tick_ms <= LONGEST_TICK_MS:
         cause = f"a tick lasts {LEAST_TICK_MS:g} to {LONGEST_TICK_MS:g} ms"
         raise IrlxError(report("IRL006", option="--tick", value=f"{tick_ms:g}", cause=cause))
-    return Job(program, loaded, round(tick_ms * 1e6), slowest, steps)
+    return Job(program, loaded, round(tick_ms * 1e6), slowest, steps, said)
+
+
+def inputs_of(cell: Cell, given: InputsGiven) -> Inputs:
+    """What inputs say: first `given`, a function, traces by name or the path of a CSV; else the cell.
+
+    Raises CellError for a file that is no such CSV.
+    """
+    if callable(given):
+        return Inputs(cell.inputs, given)
+    if isinstance(given, str | os.PathLike):
+        return Inputs({**cell.inputs, **read_input_file(Path(given))})
+    own = {
+        name.casefold(): tuple((float(at), float(value)) for at, value in trace)
+        for name, trace in (given or {}).items()
+    }
+    return Inputs({**cell.inputs, **own})
 
 
 def _loaded(path: PathLike, cell: PathLike | None) -> Program:
@@ -117,7 +142,7 @@ class Execution:
         cell = job.cell
         dt = job.tick_ns / 1e9
         setup = PacingSetup(
-            kinematics_of(cell), cell.limits, cell.weights, cell.start, dt, max_slow=job.max_slow
+            kinematics_of(cell), cell.limits, cell.weights, cell.start, dt, (), job.max_slow, job.inputs
         )
         self.kinematics = setup.kinematics
         self._pacer = Pacer(setup, self._locate)
@@ -258,17 +283,18 @@ def run(
     explain_tick: int | None = None,
     max_slow: float | None = None,
     max_steps: int | None = None,
+    inputs: InputsGiven = None,
 ) -> Run:
     """Interpret a program, move its robot, and return the joint stream.
 
     `cell`: path of the cell file, by default found beside the program; `tick_ms` overrides the
     cell's tick; `explain_tick` asks for `Run.explanation` of that tick; a move that limits make
     more than `max_slow` times as long as programmed is an error, and so are more than `max_steps`
-    statements (by default 10,000,000). Raises ProgramError and
-    CellError before anything moves, RunError (with what was executed until then) once it does,
+    statements (by default 10,000,000); `inputs` as `InputsGiven`, in place of the cell's. Raises ProgramError
+    and CellError before anything moves, RunError (with what was executed until then) once it does,
     RunInterrupted on Ctrl-C.
     """
-    job = prepare(program, cell, tick_ms, max_slow, max_steps)
+    job = prepare(program, cell, tick_ms, max_slow, max_steps, inputs)
     return execute(job, progress, explain_tick)
 
 
@@ -305,13 +331,14 @@ def stream(
     tick_ms: float | None = None,
     max_slow: float | None = None,
     max_steps: int | None = None,
+    inputs: InputsGiven = None,
 ) -> Iterator[Sample]:
     """Samples of a run, one after another, motion by motion as they are asked for.
 
     The same samples as `run` gives. Iteration may stop at any sample. What cannot be prepared raises
     here, what goes wrong in motion at the sample it keeps from coming, as IrlxError.
     """
-    return _samples(prepare(program, cell, tick_ms, max_slow, max_steps))
+    return _samples(prepare(program, cell, tick_ms, max_slow, max_steps, inputs))
 
 
 def _samples(job: Job) -> Iterator[Sample]:

@@ -10,12 +10,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from irlx.blocks import (
+    AskInput,
+    AskInputChange,
     AskManipulability,
     AskNearestPosture,
     AskPose,
     AskPosture,
     AskPostureOf,
     Block,
+    InputBlock,
+    WaitBlock,
 )
 from irlx.cell.cell import Cell
 from irlx.cell.find import is_file
@@ -166,6 +170,19 @@ def _program_check(
     return Check("program", FAILED if findings else OK, detail="; ".join(findings) or unsaid)
 
 
+def _recorded(question: AskInput | AskInputChange, outline: Outline, done: int) -> tuple[float, ...]:
+    """What the stream says of inputs, `done` of its blocks being behind: what was read, how long was waited.
+
+    Raises Unanswerable where the next block is neither.
+    """
+    block = outline.records[done].block if done < len(outline.records) else None
+    if isinstance(question, AskInput) and isinstance(block, InputBlock):
+        return (block.value,)
+    if isinstance(question, AskInputChange) and isinstance(block, WaitBlock):
+        return (block.duration,)
+    raise Unanswerable
+
+
 def _replayed(program: Program, cell: Cell, outline: Outline, max_steps: int) -> Iterator[Block]:
     """Blocks of a program whose questions are answered by the stream: nothing moves."""
     source = interpret(
@@ -188,6 +205,8 @@ def _replayed(program: Program, cell: Cell, outline: Outline, max_steps: int) ->
             reply = outline.posture(row)
         elif isinstance(item, AskPose | AskManipulability):
             reply = _of_posture(item, cell)
+        elif isinstance(item, AskInput | AskInputChange):
+            reply = _recorded(item, outline, done)
         else:
             done += 1
             yield item

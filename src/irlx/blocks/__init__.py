@@ -17,6 +17,8 @@ from irlx.blocks.options import (
     LimitSwitchBlock,
 )
 from irlx.blocks.questions import (
+    AskInput,
+    AskInputChange,
     AskManipulability,
     AskNearestPosture,
     AskPose,
@@ -25,9 +27,12 @@ from irlx.blocks.questions import (
     Question,
 )
 from irlx.blocks.reconfigure import ReconfigureBlock
+from irlx.blocks.signal import InputBlock, Port, SignalBlock, SignalKind, WaitBlock
 
 __all__ = [
     "ArcCourse",
+    "AskInput",
+    "AskInputChange",
     "AskManipulability",
     "AskNearestPosture",
     "AskPose",
@@ -41,6 +46,7 @@ __all__ = [
     "CyclicBlock",
     "FreezeBlock",
     "HaltBlock",
+    "InputBlock",
     "JointRange",
     "JointTarget",
     "LimitClause",
@@ -51,7 +57,11 @@ __all__ = [
     "MoveKind",
     "Origin",
     "PauseBlock",
+    "Port",
     "PoseTarget",
     "Question",
     "ReconfigureBlock",
+    "SignalBlock",
+    "SignalKind",
+    "WaitBlock",
 ]

@@ -19,6 +19,7 @@ from irlx.blocks.criterion import CriterionBlock
 from irlx.blocks.move import MoveBlock
 from irlx.blocks.options import CyclicBlock, FreezeBlock, LimitSwitchBlock
 from irlx.blocks.reconfigure import ReconfigureBlock
+from irlx.blocks.signal import InputBlock, SignalBlock, WaitBlock
 
 BLOCK_TYPES: dict[str, type[Block]] = {
     kind.__name__: kind
@@ -31,6 +32,9 @@ BLOCK_TYPES: dict[str, type[Block]] = {
         FreezeBlock,
         CyclicBlock,
         CriterionBlock,
+        SignalBlock,
+        InputBlock,
+        WaitBlock,
     )
 }
 """Every block there is, by the name that its plain form carries."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from irlx.blocks.block import Origin
+from irlx.blocks.signal import Port
 
 
 @dataclass(frozen=True)
@@ -62,4 +63,30 @@ class AskManipulability:
     posture: tuple[float, ...]
 
 
-Question = AskPosture | AskPostureOf | AskNearestPosture | AskPose | AskManipulability
+@dataclass(frozen=True)
+class AskInput:
+    """What does this input say, all blocks so far executed? Answer: one number, 0 or 1 for a BOOL.
+
+    `names` are what its values may go by, the first that is known counts: the port and what the program
+    calls it.
+    """
+
+    origin: Origin
+    port: Port
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class AskInputChange:
+    """How long until one of these inputs may say something else, all blocks so far executed?
+
+    Answer: one number, s, or none at all where none of them ever changes.
+    """
+
+    origin: Origin
+    inputs: tuple[tuple[str, ...], ...]
+
+
+Question = (
+    AskPosture | AskPostureOf | AskNearestPosture | AskPose | AskManipulability | AskInput | AskInputChange
+)

@@ -57,6 +57,9 @@ def add_parser(commands: Any) -> None:
         help="end with IRL510 after N statements (default: 10,000,000)",
     )
     parser.add_argument(
+        "--inputs", metavar="CSV", help="what inputs say: lines of time in s, input, value (else the cell's)"
+    )
+    parser.add_argument(
         "--explain-tick",
         type=int,
         metavar="N",
@@ -121,9 +124,11 @@ def _prepared(options: argparse.Namespace) -> tuple[Job, list[Path]]:
         program = load(options.program, options.cell)
         from irlx.pipeline import prepare
 
-        job = prepare(program, options.cell, options.tick, options.max_slow, options.max_steps)
+        asked = options.tick, options.max_slow, options.max_steps, options.inputs
+        job = prepare(program, options.cell, *asked)
         read = [*(found.path for found in program.data_lists), *(found.path for found in program.modules)]
         inputs = (program.path, Path(job.cell.file), *read)
+        inputs += () if options.inputs is None else (Path(options.inputs),)
         return job, output_paths(options.output, program.path, inputs)
     except IrlxError as error:
         if options.json:

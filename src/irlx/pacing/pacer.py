@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import hypot, inf
 
 import numpy as np
@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from irlx.blocks import (
+    AskInput,
+    AskInputChange,
     AskManipulability,
     AskNearestPosture,
     AskPose,
@@ -26,6 +28,7 @@ from irlx.blocks import (
     PoseTarget,
     Question,
     ReconfigureBlock,
+    WaitBlock,
 )
 from irlx.diagnostics import Diagnostic, Place, report
 from irlx.motion.arc import Arc
@@ -45,6 +48,7 @@ from irlx.pacing.impossible import (
     joint_value,
     slower_than_allowed,
 )
+from irlx.pacing.inputs import Inputs, answer_of_inputs
 from irlx.pacing.options import LimitsInForce, Options, SwitchBlock, limits_in_force
 from irlx.pacing.path_motion import Failure, PacedPath, PathMotion, pace_path
 from irlx.pacing.posed import posed
@@ -64,6 +68,7 @@ from irlx.pacing.rows import MotionRows, PathPart
 from irlx.pacing.slowdown.model import Model
 from irlx.pacing.snap import SAME_VALUE, snapped
 from irlx.pacing.switches import check_freeze, check_inside, check_joint_target, check_limit
+from irlx.pacing.waiting import waited
 from irlx.promises import PATH_ORIENTATION, PATH_POSITION
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
@@ -86,7 +91,7 @@ _TURN_RULES = 1e3
 class PacingSetup:
     """The robot as a run finds it: model, own limits, weights (n,), start posture (n,), tick in s.
 
-    A move may take `max_slow` times as long as programmed, and a tick.
+    A move may take `max_slow` times as long as programmed, and a tick; `inputs` are what the world says.
     """
 
     kinematics: Kinematics
@@ -96,6 +101,7 @@ class PacingSetup:
     dt: float
     modifiers: Sequence[DemandModifier] = ()
     max_slow: float = inf
+    inputs: Inputs = field(default_factory=Inputs)
 
 
 class Pacer:
@@ -119,6 +125,9 @@ class Pacer:
         """
         if isinstance(question, AskPosture):
             return tuple(float(value) for value in self.q)
+        if isinstance(question, AskInput | AskInputChange):
+            setup = self._setup
+            return answer_of_inputs(question, setup.inputs, self.tick * setup.dt, setup.dt, self._locate)
         if isinstance(question, AskPose | AskManipulability):
             return answer_of_posture(question, self._setup.kinematics)
         in_force = limits_in_force(self._setup.limits, self.options)
@@ -140,6 +149,8 @@ class Pacer:
         if isinstance(block, ReconfigureBlock):
             return self._reconfigure(block)
         place = self._locate(block.origin)
+        if isinstance(block, WaitBlock):
+            return self._wait(block, place)
         if isinstance(block, LimitSwitchBlock):
             self.warnings += check_limit(block, self._robot, self._setup.limits, self.q, place)
         if isinstance(block, FreezeBlock):
@@ -171,6 +182,11 @@ class Pacer:
         self.q = rows.q[-1]
         self.tick += len(rows)
         return replace(rows, limits=in_force.limits)
+
+    def _wait(self, block: WaitBlock, place: Place) -> MotionRows | None:
+        setup = self._setup
+        rows = waited(block, self.q, setup.dt, self.tick + 1, setup.kinematics, place)
+        return self._moved(rows, limits_in_force(setup.limits, self.options))
 
     # ---- RECONFIGURATION
 

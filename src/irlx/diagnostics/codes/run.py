@@ -65,6 +65,22 @@ RUN = (
         "widen the limits, start from another posture, or allow more (--max-slow)",
     ),
     error(
+        "IRL530",
+        "nothing says what the input {name} ({port}) is{near}; inputs known: {known}",
+        "give it a trace in [signals.inputs] of the cell or with --inputs, or a function in Python",
+    ),
+    error("IRL531", "the input {name} is {value} at {time} s, which is no {kind}"),
+    error(
+        "IRL532",
+        "WAIT FOR {condition} can never end: no input that it reads changes any more",
+        "give the input a later change, or the wait a TIMEOUT",
+    ),
+    error(
+        "IRL533",
+        "WAIT FOR {condition} has waited {waited} s, the longest time that a wait without TIMEOUT may take",
+        "give it a TIMEOUT",
+    ),
+    error(
         "IRL590",
         "this version of irlx reads {what} but does not execute it yet",
         "docs/reference/language.md lists what is executed",

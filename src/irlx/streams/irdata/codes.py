@@ -21,7 +21,10 @@ BLOCK_CODES = {
     "FreezeBlock": 420,
     "CyclicBlock": 430,
     "CriterionBlock": 440,
+    "SignalBlock": 500,
+    "InputBlock": 510,
+    "WaitBlock": 520,
 }
-"""Code of each kind of function block; signals and waits will take 5xx."""
+"""Code of each kind of function block."""
 
 BLOCK_OF_CODE = {code: name for name, code in BLOCK_CODES.items()}
