@@ -6,11 +6,22 @@ from collections.abc import Callable, Sequence
 from math import pi
 from typing import TYPE_CHECKING, Any
 
-from irlx.blocks import AskManipulability, AskNearestPosture, AskPose, AskPosture, AskPostureOf, Question
+from irlx.blocks import (
+    AskInput,
+    AskManipulability,
+    AskNearestPosture,
+    AskPose,
+    AskPosture,
+    AskPostureOf,
+    InputBlock,
+    Question,
+    SignalKind,
+)
 from irlx.interpreter.code import Frame, Step
 from irlx.interpreter.compiled import Compiled, first_failing
 from irlx.interpreter.errors import fail
 from irlx.interpreter.joints import main_joints, si_values
+from irlx.interpreter.scope import Signal
 from irlx.interpreter.targets import origin_of, pose_of_answer, pose_target
 from irlx.interpreter.types import POSE, POSITION, REAL, Record, Type
 from irlx.interpreter.values import ArrayValue, RecordValue
@@ -68,6 +79,27 @@ class Asking:
             return RecordValue(type, (pose(frame), 0, ArrayValue(turns.type, list(signed)), empty))
 
         return robtarget
+
+    def input(self, node: tree.Designator, signal: Signal) -> Compiled:
+        """The value of an input at that moment; what was read becomes a block. Raises InterpreterError."""
+        context = self._expressions.context
+        self._machine_for(node.base)
+        machine, origin, port = context.machine, origin_of(context.source, node), signal.port
+        asked = AskInput(origin, port, (signal.name, port.name))
+        value = self._ask(node, lambda _: asked, lambda answer: answer[0])
+        assembler = context.assembler
+        assert assembler is not None
+
+        def make(following: int) -> Step:
+            def step(frame: Frame) -> int:
+                block = InputBlock(id=machine.next_id(), origin=origin, port=port, value=value(frame))
+                return machine.emit((block,), following)
+
+            return step
+
+        assembler.add(node, make)
+        to: Callable[[float], Any] = {SignalKind.BOOL: bool, SignalKind.INT: int}.get(port.kind, float)
+        return Compiled(signal.type, lambda frame: to(value(frame)))
 
     def call(self, name: tree.Name, given: Sequence[tree.Expression], node: tree.Node) -> Compiled:
         """A function that asks. Raises InterpreterError: IRL228, IRL590."""

@@ -13,6 +13,7 @@ from irlx.interpreter.errors import fail
 from irlx.interpreter.expressions import Expressions
 from irlx.interpreter.routines import compile_body, declared_routine
 from irlx.interpreter.scope import Routine, Scope, Variable
+from irlx.interpreter.signals import declared_signals
 from irlx.interpreter.statements import Statements
 from irlx.interpreter.support import EXECUTED_DECLARATIONS, part_name
 from irlx.interpreter.type_forms import TypeForms
@@ -58,6 +59,26 @@ class Unit:
 
     def _declare(self, root: tree.Program | tree.Module, lists: Sequence[ImportedList]) -> None:
         """Constants and types in text order, then data lists, then variables: parts come in any order."""
+        self._declare_fixed(root)
+        for found in lists:
+            self.scope.variables.update(self._world.data_list(found, self.scope, list_values))
+        routines: list[tuple[Routine, tree.ProcedureDeclaration | tree.FunctionDeclaration]] = []
+        for part in root.declarations:
+            if isinstance(part, tree.ProcedureDeclaration | tree.FunctionDeclaration):
+                routine = declared_routine(part, self._types, self._source)
+                self.scope.routines[part.name.key] = routine
+                routines.append((routine, part))
+            elif isinstance(part, tree.SignalDeclaration):
+                for signal in declared_signals(part, Expressions(self._constants), self.scope):
+                    self.scope.variables[signal.name.casefold()] = signal
+        for part in root.declarations:
+            if isinstance(part, tree.VarDeclaration):
+                self._add(part.type, part.variables, constant=False)
+        for routine, part in routines:
+            compile_body(routine, part, self._constants)
+
+    def _declare_fixed(self, root: tree.Program | tree.Module) -> None:
+        """What is imported from modules, types and constants."""
         for part in root.declarations:
             if isinstance(part, tree.ImportFrom):
                 self._import(part)
@@ -68,19 +89,6 @@ class Unit:
                 self._add(part.type, part.constants, constant=True)
             elif not isinstance(part, EXECUTED_DECLARATIONS):
                 raise fail("IRL590", self._source, part.span, what=part_name(part))
-        for found in lists:
-            self.scope.variables.update(self._world.data_list(found, self.scope, list_values))
-        routines: list[tuple[Routine, tree.ProcedureDeclaration | tree.FunctionDeclaration]] = []
-        for part in root.declarations:
-            if isinstance(part, tree.ProcedureDeclaration | tree.FunctionDeclaration):
-                routine = declared_routine(part, self._types, self._source)
-                self.scope.routines[part.name.key] = routine
-                routines.append((routine, part))
-        for part in root.declarations:
-            if isinstance(part, tree.VarDeclaration):
-                self._add(part.type, part.variables, constant=False)
-        for routine, part in routines:
-            compile_body(routine, part, self._constants)
 
     def finish(self, root: tree.Node, body: Sequence[tree.Statement]) -> Code:
         """Add statements behind the initial values, and make the code."""

@@ -12,7 +12,7 @@ from irlx.interpreter.code import Frame
 from irlx.interpreter.compiled import Compiled, Run
 from irlx.interpreter.conversion import count
 from irlx.interpreter.errors import InterpreterError, fail
-from irlx.interpreter.scope import Local, PartCell, Routine, SlotCell, Variable
+from irlx.interpreter.scope import Local, PartCell, Routine, Signal, SlotCell, Variable
 from irlx.interpreter.system_names import system_name
 from irlx.interpreter.types import CHAR, INT, STRING, Array, Record, Simple, Type
 from irlx.interpreter.values import UNSET, ArrayValue, has_arrays, is_set, replaced, share, unset_part
@@ -61,6 +61,9 @@ class Designators:
             if changing and context.assembler is None:
                 raise fail("IRL590", source, name.span, what=_NOT_CONSTANT)
             return found
+        port = self.signal(name)
+        if port is not None:
+            return port
         what = system_name(name)
         if what:
             raise fail("IRL590", source, name.span, what=what)
@@ -69,6 +72,16 @@ class Designators:
             near = "; it comes from a data list and is a variable, of which constants know nothing"
         near = near or near_matches(name.name, scope.spellings())
         raise fail("IRL201", source, name.span, name=name.name, near=near)
+
+    def signal(self, name: tree.Name) -> Signal | None:
+        """The signal of a name: a declared one, or a port that no declaration hides; else None."""
+        found = self._expressions.scope.found(name.key)
+        if found is not None:
+            return found if isinstance(found, Signal) else None
+        from irlx.interpreter.signals import port_signal
+
+        port = port_signal(name)
+        return None if port is None else self._expressions.scope.add_port(name.key, port)
 
     # ---- reading
 
@@ -145,6 +158,8 @@ class Designators:
         source, stored = self._expressions.source, self.stored(node.base)
         if stored.constant:
             raise fail("IRL211", source, node.span, name=stored.name, kind="a constant")
+        if isinstance(stored, Signal) and stored.is_input:
+            raise fail("IRL211", source, node.span, name=stored.name, kind="an input")
         way = self.way(node, stored.type)
         if way.letter is not None:
             data = {"expected": "a variable", "found": "a character of a text"}
@@ -156,7 +171,7 @@ class Designators:
 
         Raises InterpreterError: IRL515 for what is no variable, IRL211 for a constant.
         """
-        if not isinstance(node, tree.Designator):
+        if not isinstance(node, tree.Designator) or self.signal(node.base) is not None:
             raise fail("IRL515", self._expressions.source, node.span, name=name)
         stored, way = self._settable(node)
         whole = _cell(stored)

@@ -110,10 +110,16 @@ class Expressions:
 
     def _is_step(self, node: tree.Node) -> bool:
         if isinstance(node, tree.Designator):
-            return node.base.key in ACTUAL or isinstance(self.scope.found(node.base.key), Routine)
-        if not isinstance(node, tree.FunctionCall):
-            return False
-        return node.name.key in ASKING or isinstance(self.scope.found(node.name.key), Routine)
+            signal = self.designators.signal(node.base)
+            reads = signal is not None and signal.is_input
+            return reads or node.base.key in ACTUAL or self.is_routine(node)
+        return self.is_routine(node) or (isinstance(node, tree.FunctionCall) and node.name.key in ASKING)
+
+    def is_routine(self, node: tree.Node) -> bool:
+        """Whether an expression is the call of a routine of the program."""
+        if isinstance(node, tree.Designator):
+            return isinstance(self.scope.found(node.base.key), Routine)
+        return isinstance(node, tree.FunctionCall) and isinstance(self.scope.found(node.name.key), Routine)
 
     # ---- expressions without an expected type
 
@@ -143,6 +149,9 @@ class Expressions:
         key = node.base.key
         if key in ACTUAL:
             return self._asking.actual(node)
+        signal = self.designators.signal(node.base)
+        if signal is not None and signal.is_input and not node.selectors:
+            return self._asking.input(node, signal)
         found = self.scope.found(key)
         if not node.selectors and (isinstance(found, Routine) or (found is None and key in FUNCTIONS)):
             return self._call(node.base, (), node)

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
+from irlx.blocks import Port
 from irlx.interpreter.code import Code, Frame
 from irlx.interpreter.types import Type
 from irlx.interpreter.values import Value, replaced
@@ -19,6 +20,14 @@ class Variable:
     type: Type
     value: Value
     constant: bool = False
+
+
+@dataclass(slots=True, kw_only=True)
+class Signal(Variable):
+    """A name of an input or output; the value of an output is what was set last."""
+
+    port: Port
+    is_input: bool
 
 
 @dataclass(frozen=True)
@@ -124,6 +133,17 @@ class Scope:
             if found is not None:
                 return found
         return None
+
+    def signals(self) -> list[Signal]:
+        """All signals."""
+        stored = (variable for scope in self._chain() for variable in scope.variables.values())
+        return [variable for variable in stored if isinstance(variable, Signal)]
+
+    def add_port(self, key: str, signal: Signal) -> Signal:
+        """Declare a port that is used by its own name, for everything around as well."""
+        *_, outermost = self._chain()
+        outermost.variables[key] = signal
+        return signal
 
     def type(self, key: str) -> Type | None:
         """The innermost type of a name."""

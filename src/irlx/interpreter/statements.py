@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from irlx.blocks import HaltBlock, PauseBlock
+from irlx.blocks import HaltBlock, PauseBlock, SignalBlock
 from irlx.interpreter.calls import Calls
 from irlx.interpreter.cases import add_case
 from irlx.interpreter.code import Frame, Label, Step
@@ -16,10 +16,11 @@ from irlx.interpreter.expressions import Expressions
 from irlx.interpreter.loops import add_for
 from irlx.interpreter.machine import END
 from irlx.interpreter.motion import Motion
-from irlx.interpreter.scope import Routine
+from irlx.interpreter.scope import Routine, Signal
 from irlx.interpreter.support import part_name
 from irlx.interpreter.targets import origin_of
 from irlx.interpreter.types import BOOL, Type
+from irlx.interpreter.waits import add_wait, add_wait_for
 from irlx.language import tree
 from irlx.language.builtins import PROCEDURES
 
@@ -85,7 +86,27 @@ class Statements:
     # ---- assignment, calls
 
     def _assignment(self, node: tree.Assignment) -> None:
+        signal = self.expressions.designators.signal(node.target.base)
+        if signal is not None and not signal.is_input and not node.target.selectors:
+            self._set_output(signal, node)
+            return
         self.assign(node.target, node.value, node)
+
+    def _set_output(self, signal: Signal, node: tree.Assignment) -> None:
+        """Add the steps that set an output: its value is remembered, and becomes a block."""
+        machine, origin = self.context.machine, origin_of(self.context.source, node)
+        run, port = self.expressions.value(node.value, signal.type).run, signal.port
+
+        def make(following: int) -> Step:
+            def step(frame: Frame) -> int:
+                value = run(frame)
+                signal.value = value
+                block = SignalBlock(id=machine.next_id(), origin=origin, port=port, value=float(value))
+                return machine.emit((block,), following)
+
+            return step
+
+        self.assembler.add(node, make)
 
     def assign(self, target: tree.Designator, value: tree.Expression, node: tree.Node) -> None:
         """Add the steps of an assignment; the place is found before the value."""
@@ -238,4 +259,6 @@ _ADDERS: dict[type[tree.Node], Any] = {
     tree.Repeat: Statements._repeat,
     tree.Halt: Statements._halt,
     tree.Pause: Statements._pause,
+    tree.WaitTime: add_wait,
+    tree.WaitFor: add_wait_for,
 }

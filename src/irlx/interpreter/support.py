@@ -27,6 +27,7 @@ EXECUTED_DECLARATIONS = (
     tree.Export,
     tree.ProcedureDeclaration,
     tree.FunctionDeclaration,
+    tree.SignalDeclaration,
 )
 _CLAUSES = (tree.WithLimit, tree.WithReconfiguration, tree.WithCriterion)
 _EXECUTED_FUNCTIONS = frozenset({*FUNCTIONS, *ASKING, *builtins.TYPES}) - LATER_TYPES
@@ -48,9 +49,6 @@ MOVE_PARAMS = {
 _NAMES: dict[type[tree.Node], str] = {
     tree.RobotBinding: "ROBOT",
     tree.StandardChannel: "STANDARD_IN and STANDARD_OUT",
-    tree.SignalDeclaration: "INPUT and OUTPUT",
-    tree.WaitTime: "WAIT",
-    tree.WaitFor: "WAIT FOR",
     tree.ObstacleStart: "OBSTACLE",
     tree.ObstacleEnd: "OBSTACLEEND",
     tree.WithTolerance: "WITH TOLERANCE",
