@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import gc
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
 from irlx.diagnostics import SourceText
 from irlx.interpreter.code import Code, Step
 from irlx.interpreter.declare import Unit
+from irlx.interpreter.list_text import Rewritten
 from irlx.interpreter.machine import MAX_STEPS, Answer, Blocks, Machine
-from irlx.interpreter.scope import Scope, Variable
+from irlx.interpreter.scope import Scope
 from irlx.interpreter.setting import Setting
 from irlx.interpreter.world import World
 from irlx.language import tree
@@ -76,9 +77,9 @@ class Interpretation:
         self._code.spans.append(self._code.spans[-1])
         return self._machine.run(self._code)
 
-    def values_of(self, found: ImportedList) -> Mapping[str, Variable]:
-        """Variables of an imported data list by casefolded name, with their present values."""
-        return self._world.list_variables(found)
+    def rewritten(self, found: ImportedList) -> Rewritten:
+        """Text of an imported data list with the values that its variables have now."""
+        return self._world.rewritten(found)
 
 
 @contextmanager
