@@ -22,7 +22,7 @@ from irlx.cell.load import load_cell
 from irlx.cell.setting import setting_of
 from irlx.diagnostics import Diagnostic, IrlxError, Place, Span, report
 from irlx.diagnostics.diagnostic import near_matches
-from irlx.interpreter.interpret import MAX_STEPS, interpret
+from irlx.interpreter.interpret import MAX_STEPS, Interpretation
 from irlx.pacing.explanation import TickExplanation
 from irlx.pacing.explanation import explain_tick as explain_row
 from irlx.pacing.inputs import InputFunction, Inputs
@@ -35,6 +35,7 @@ from irlx.report.run import Run, RunError, RunInterrupted
 from irlx.robot.equality import Constraint, LinearConstraint
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.registered_constraints import registered_constraints
+from irlx.streams.atomic import AtomicFile
 from irlx.streams.joint_stream import FORMAT_VERSION, StreamHeader
 from irlx.streams.sample import Sample
 
@@ -147,6 +148,7 @@ class Execution:
         self.kinematics = setup.kinematics
         self._pacer = Pacer(setup, self._locate)
         texts = (job.program.source, *(module.source for module in job.program.modules))
+        self._interpretation: Interpretation | None = None
         self._texts = {PurePath(text.name).name: text for text in texts}
 
     def __iter__(self) -> Iterator[Executed]:
@@ -186,9 +188,10 @@ class Execution:
         """Blocks as the interpreter yields them, its questions answered on the way."""
         job, program = self.job, self.job.program
         setting = setting_of(job.cell)
-        source = interpret(
+        ready = Interpretation(
             program.tree, program.source, setting, program.data_lists, program.modules, job.max_steps
         )
+        self._interpretation, source = ready, ready.run()
         reply = None
         while True:
             try:
@@ -198,6 +201,25 @@ class Execution:
             reply = answer(item) if isinstance(item, Question) else None
             if isinstance(item, Block):
                 yield item
+
+    def write_data(self) -> list[Diagnostic]:
+        """Write values that the program changed back to its data lists, each file whole or not at all.
+
+        Returns warnings, IRL246. Raises IrlxError, IRL247, for a file that is not as it was read; IRL003
+        for one that cannot be written. Lists before it are written then.
+        """
+        warnings: list[Diagnostic] = []
+        if self._interpretation is None:
+            return warnings
+        for found in self.job.program.all_lists:
+            new = self._interpretation.rewritten(found)
+            warnings += new.warnings
+            if new.text != found.source.text:
+                if not found.is_as_read():
+                    raise IrlxError(report("IRL247", Place(str(found.path)), path=found.path))
+                with AtomicFile(found.path) as file:
+                    file.write(new.text.encode("utf-8"))
+        return warnings
 
     def explain(self, executed: Executed, start: Array, tick: int) -> TickExplanation | None:
         """Explanation of a tick, None where it is no row of this block; `start` (n,) the row before it."""
@@ -284,23 +306,29 @@ def run(
     max_slow: float | None = None,
     max_steps: int | None = None,
     inputs: InputsGiven = None,
+    write_data: bool = False,
 ) -> Run:
     """Interpret a program, move its robot, and return the joint stream.
 
     `cell`: path of the cell file, by default found beside the program; `tick_ms` overrides the
     cell's tick; `explain_tick` asks for `Run.explanation` of that tick; a move that limits make
     more than `max_slow` times as long as programmed is an error, and so are more than `max_steps`
-    statements (by default 10,000,000); `inputs` as `InputsGiven`, in place of the cell's. Raises ProgramError
-    and CellError before anything moves, RunError (with what was executed until then) once it does,
+    statements (by default 10,000,000); `inputs` as `InputsGiven`, in place of the cell's. With `write_data`,
+    values of data lists that the program has changed are written to their files after a complete run. Raises
+    ProgramError and CellError before anything moves, RunError (with what was executed until then) once it does,
     RunInterrupted on Ctrl-C.
     """
     job = prepare(program, cell, tick_ms, max_slow, max_steps, inputs)
-    return execute(job, progress, explain_tick)
-
-
-def execute(job: Job, progress: Progress | None = None, explain_tick: int | None = None) -> Run:
-    """Run a prepared job; see `run`."""
     execution = Execution(job)
+    finished = execute(execution, progress, explain_tick)
+    if not write_data:
+        return finished
+    return replace(finished, diagnostics=(*finished.diagnostics, *execution.write_data()))
+
+
+def execute(execution: Execution, progress: Progress | None = None, explain_tick: int | None = None) -> Run:
+    """Run a prepared job to its end; see `run`."""
+    job = execution.job
     recording = execution.recording()
     explanation: TickExplanation | None = None
     try:

@@ -33,6 +33,13 @@ class DataListFile(ImportedList):
     path: Path
     sha256: str
 
+    def is_as_read(self) -> bool:
+        """Whether the file still holds the very bytes that were read."""
+        try:
+            return hashlib.sha256(self.path.read_bytes()).hexdigest() == self.sha256
+        except OSError:
+            return False
+
 
 @dataclass(frozen=True)
 class ModuleFile(ImportedModule):
@@ -62,6 +69,13 @@ class Program:
     def name(self) -> str:
         """Name after PROGRAM, as spelt."""
         return self.tree.name.name
+
+    @property
+    def all_lists(self) -> tuple[DataListFile, ...]:
+        """Data lists of the program and its modules, each file once."""
+        of_modules = (found for module in self.modules for found in module.data_lists)
+        lists = (found for found in (*self.data_lists, *of_modules) if isinstance(found, DataListFile))
+        return tuple({found.path: found for found in lists}.values())
 
     @property
     def specification(self) -> Name | None:

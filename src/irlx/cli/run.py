@@ -72,6 +72,11 @@ def add_parser(commands: Any) -> None:
         metavar="M",
         help="import a module or a .py file that registers criteria of your own; may be given several times",
     )
+    parser.add_argument(
+        "--write-data",
+        action="store_true",
+        help="after a complete run, write values of data lists that the program changed back to their files",
+    )
     parser.add_argument("--json", action="store_true", help="print the summary as JSON")
     parser.add_argument("--quiet", action="store_true", help="no progress, no summary")
     parser.add_argument("--no-verify", action="store_true", help="do not check the written files")
@@ -83,12 +88,13 @@ def command(options: argparse.Namespace) -> int:
     from irlx.cli.output import exit_code, print_diagnostics
 
     job, outputs = _prepared(options)
-    from irlx.pipeline import execute
+    from irlx.pipeline import Execution, execute
     from irlx.report.run import RunError, RunInterrupted
 
+    execution = Execution(job)
     try:
         with _progress(options) as progress:
-            run = execute(job, progress, options.explain_tick)
+            run = execute(execution, progress, options.explain_tick)
     except RunError as error:
         print_diagnostics(error.diagnostics)
         if not options.json:
@@ -106,6 +112,9 @@ def command(options: argparse.Namespace) -> int:
     reports = {} if options.no_verify else {str(path): _verified(path, job) for path in outputs}
     broken = [found for name, report in reports.items() for found in report.diagnostics(name)]
     print_diagnostics(broken)
+    if options.write_data and not broken:
+        # Behind the verification, which reads the lists as they were.
+        print_diagnostics(execution.write_data())
     _print_summary(run, outputs, reports, broken, options)
     return 1 if broken else 0
 

@@ -22,6 +22,8 @@ from irlx.interpreter.types import BOOL, INT, ORIENTATION, REAL, STRING, Array, 
 from irlx.interpreter.values import Value, has_arrays
 from irlx.language import tree
 
+_LITERALS = (tree.IntLiteral, tree.RealLiteral, tree.BoolLiteral, tree.StringLiteral)
+
 Parts = Sequence[tuple[tree.Node, Callable[[], Compiled]]]
 
 
@@ -79,7 +81,7 @@ class Expressions:
 
     def operands(self, parts: Parts) -> list[Compiled]:
         """Several expressions, evaluated in their order although some call or ask on the way."""
-        last = max((at for at, (node, _) in enumerate(parts) if self.suspends(node)), default=-1)
+        last = next((at for at in range(len(parts) - 1, 0, -1) if self.suspends(parts[at][0])), 0)
         return [
             self.kept(node, compile()) if at < last else compile() for at, (node, compile) in enumerate(parts)
         ]
@@ -103,6 +105,10 @@ class Expressions:
 
     def suspends(self, root: tree.Node) -> bool:
         """Whether an expression calls a routine of the program, or asks the machine."""
+        if isinstance(root, _LITERALS):
+            return False
+        if isinstance(root, tree.Designator) and not root.selectors:
+            return self._is_step(root)
         known = self._suspends.get(id(root))
         if known is None:
             known = self._suspends[id(root)] = any(map(self._is_step, tree.walk(root)))
@@ -287,7 +293,10 @@ class Expressions:
             data = {"expected": expected, "found": found.type.name}
             return failing(fail("IRL222", self.source, node.span, **data), (found,))
         fitting: list[Type] = []
-        for type in candidates:
+        alike = [type for type in candidates if parts_needed(type) == len(node.items)]
+        if len(alike) == 1:
+            return self.value(node, alike[0])
+        for type in alike:
             mark = self.context.mark()
             found = self.value(node, type)
             self.context.undo(mark)

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import gc
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 
 from irlx.diagnostics import SourceText
 from irlx.interpreter.code import Code, Step
 from irlx.interpreter.declare import Unit
+from irlx.interpreter.list_text import Rewritten
 from irlx.interpreter.machine import MAX_STEPS, Answer, Blocks, Machine
-from irlx.interpreter.scope import Scope, Variable
+from irlx.interpreter.scope import Scope
 from irlx.interpreter.setting import Setting
 from irlx.interpreter.world import World
 from irlx.language import tree
@@ -16,6 +20,10 @@ from irlx.language.data_lists import ImportedList
 from irlx.language.modules import ImportedModule
 
 __all__ = ["MAX_STEPS", "Answer", "Blocks", "Interpretation", "declared_scope", "interpret"]
+
+
+_FRAMES = 4000
+"""Frames of Python for the 150 levels of an expression, ten or so for each, inside those of statements."""
 
 
 class Interpretation:
@@ -36,6 +44,16 @@ class Interpretation:
     ) -> None:
         self._machine = Machine(max_steps)
         self._world = World(setting, self._machine)
+        with _compiling():
+            self._prepare(program, source, lists, modules)
+
+    def _prepare(
+        self,
+        program: tree.Program,
+        source: SourceText,
+        lists: Sequence[ImportedList],
+        modules: Sequence[ImportedModule],
+    ) -> None:
         starts: list[Code] = []
         for module in modules:
             unit = Unit(self._world, module.source, module.tree, module.data_lists)
@@ -64,9 +82,26 @@ class Interpretation:
         self._code.spans.append(self._code.spans[-1])
         return self._machine.run(self._code)
 
-    def values_of(self, found: ImportedList) -> Mapping[str, Variable]:
-        """Variables of an imported data list by casefolded name, with their present values."""
-        return self._world.list_variables(found)
+    def rewritten(self, found: ImportedList) -> Rewritten:
+        """Text of an imported data list with the values that its variables have now."""
+        return self._world.rewritten(found)
+
+
+@contextmanager
+def _compiling() -> Iterator[None]:
+    """Room for expressions as deep as the parser takes them, and no search for garbage meanwhile.
+
+    Compiling makes many objects, all of which stay: to look for others among them is half of the time.
+    """
+    collecting, depth = gc.isenabled(), sys.getrecursionlimit()
+    gc.disable()
+    sys.setrecursionlimit(max(depth, _FRAMES))
+    try:
+        yield
+    finally:
+        sys.setrecursionlimit(depth)
+        if collecting:
+            gc.enable()
 
 
 def interpret(

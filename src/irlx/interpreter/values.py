@@ -8,7 +8,7 @@ copying: value semantics for free.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from typing import TypeAlias
 
@@ -47,7 +47,7 @@ class ArrayValue:
 
     type: Array
     values: list[Value]
-    shared: bool = False
+    shared: bool = field(default=False, compare=False)
 
     def unshared(self) -> ArrayValue:
         """This array where it may change, else a copy that may."""
@@ -66,7 +66,7 @@ Value: TypeAlias = bool | int | float | str | RecordValue | ArrayValue | Unset
 def has_arrays(type: Type) -> bool:
     """Whether values of a type are arrays or hold some."""
     if isinstance(type, Record):
-        return any(has_arrays(field) for _, field in type.fields)
+        return any(has_arrays(part) for _, part in type.fields)
     return isinstance(type, Array)
 
 
@@ -74,7 +74,7 @@ def has_arrays(type: Type) -> bool:
 def leaves(type: Type) -> int:
     """Number of simple values that a value of a type holds."""
     if isinstance(type, Record):
-        return sum(leaves(field) for _, field in type.fields)
+        return sum(leaves(part) for _, part in type.fields)
     return type.size * max(leaves(type.element), 1) if isinstance(type, Array) else 1
 
 
@@ -108,7 +108,7 @@ def unset_value(type: Type) -> Value:
     if isinstance(type, Simple):
         return UNSET
     if isinstance(type, Record):
-        return RecordValue(type, tuple(unset_value(field) for _, field in type.fields))
+        return RecordValue(type, tuple(unset_value(part) for _, part in type.fields))
     return ArrayValue(type, [unset_value(type.element)] * type.size, shared=True)
 
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TypeAlias
 
+from irlx.interpreter.list_text import Rewritten, rewritten
 from irlx.interpreter.machine import Machine
 from irlx.interpreter.scope import Scope, Variable
 from irlx.interpreter.setting import SYSTEM_REALS, Setting
 from irlx.interpreter.types import ADD_JOINT, INT, POSE, REAL, Array, Record, predefined_types
-from irlx.interpreter.values import ArrayValue, RecordValue, Value, unset_value
+from irlx.interpreter.values import ArrayValue, RecordValue, Value, share, unset_value
 from irlx.language.data_lists import ImportedList
 
 ListValues: TypeAlias = "Callable[[ImportedList, Scope, World], dict[str, Variable]]"
@@ -23,6 +24,7 @@ class World:
         self.machine = machine
         self.modules: dict[str, Scope] = {}
         self._lists: dict[str, dict[str, Variable]] = {}
+        self._first: dict[str, dict[str, Value]] = {}
         joints = len(setting.joint_names)
         empty = RecordValue(ADD_JOINT, ())
         turns = ArrayValue(Array(((1, joints),), INT), [0] * joints, shared=True)
@@ -39,11 +41,16 @@ class World:
         known = self._lists.get(found.source.name)
         if known is None:
             known = self._lists[found.source.name] = values(found, scope, self)
+            first = {key: variable.value for key, variable in known.items()}
+            for value in first.values():
+                share(value)
+            self._first[found.source.name] = first
         return known
 
-    def list_variables(self, found: ImportedList) -> Mapping[str, Variable]:
-        """Variables of a data list that was imported."""
-        return self._lists.get(found.source.name, {})
+    def rewritten(self, found: ImportedList) -> Rewritten:
+        """Text of a data list that was imported, with its present values."""
+        name = found.source.name
+        return rewritten(found, self._lists.get(name, {}), self._first.get(name, {}))
 
 
 def _system_variables(setting: Setting) -> dict[str, Variable]:
