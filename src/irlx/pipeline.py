@@ -314,9 +314,9 @@ def run(
     cell's tick; `explain_tick` asks for `Run.explanation` of that tick; a move that limits make
     more than `max_slow` times as long as programmed is an error, and so are more than `max_steps`
     statements (by default 10,000,000); `inputs` as `InputsGiven`, in place of the cell's. With `write_data`,
-    values of data lists that the program has changed are written to their files after a complete run. Raises
-    ProgramError and CellError before anything moves, RunError (with what was executed until then) once it does,
-    RunInterrupted on Ctrl-C.
+    values of data lists that the program has changed are written to their files after a complete run.
+    Raises ProgramError and CellError before anything moves, RunError (with what was executed until then)
+    once it does, RunInterrupted on Ctrl-C.
     """
     job = prepare(program, cell, tick_ms, max_slow, max_steps, inputs)
     execution = Execution(job)

@@ -29,8 +29,11 @@ class Inputs:
     traces: Mapping[str, Trace] = field(default_factory=dict)
     function: InputFunction | None = None
 
-    def value(self, names: Sequence[str], time: float) -> float | None:
-        """Value of the first of `names` that is known, at a time in s; None where none is."""
+    def value(self, names: Sequence[str], time: float, slack: float = 0.0) -> float | None:
+        """Value of the first of `names` that is known, at a time in s; None where none is.
+
+        A change of a trace that comes no more than `slack` s later counts already.
+        """
         if self.function is not None:
             for name in names:
                 said = self.function(name, time)
@@ -39,18 +42,21 @@ class Inputs:
         trace = self._trace(names)
         if trace is None:
             return None
-        index = bisect_right([at for at, _ in trace], time) - 1
+        index = bisect_right([at for at, _ in trace], time + slack) - 1
         return trace[index][1] if index >= 0 else 0.0
 
-    def next_change(self, inputs: Sequence[Sequence[str]], time: float, tick: float) -> float:
-        """Time, s, from which on one of `inputs`, each by its names, may say something else than at `time`.
+    def until_change(
+        self, inputs: Sequence[Sequence[str]], time: float, tick: float, slack: float = 0.0
+    ) -> float:
+        """Time, s, after which one of `inputs`, each by its names, may say something else than at `time`.
 
-        Infinite where none ever does. A function may change its mind at every `tick`, s.
+        Infinite where none ever does. A function may change its mind at every `tick`, s; changes of traces
+        up to `slack` s after `time` have happened already.
         """
         if self.function is not None:
-            return time + tick
+            return tick
         traces = [trace for names in inputs if (trace := self._trace(names)) is not None]
-        return min((at for trace in traces for at, _ in trace if at > time), default=inf)
+        return min((at - time for trace in traces for at, _ in trace if at > time + slack), default=inf)
 
     def _trace(self, names: Sequence[str]) -> Trace | None:
         keys = (name.casefold() for name in names)
@@ -65,12 +71,12 @@ def answer_of_inputs(
     Raises PacingError: IRL530 for an input that nobody gives a value, IRL531 for a value it cannot have.
     """
     # Ticks are multiples of dt but for rounding; a change at a tick counts at that tick.
-    now = time + TICK_SHARE * dt
+    slack = TICK_SHARE * dt
     if isinstance(question, AskInputChange):
-        change = inputs.next_change(question.inputs, now, dt)
-        return () if change == inf else (change - time,)
+        change = inputs.until_change(question.inputs, time, dt, slack)
+        return () if change == inf else (change,)
     names, port = question.names, question.port
-    value = inputs.value(names, now)
+    value = inputs.value(names, time, slack)
     if value is None:
         known = sorted(inputs.traces)
         data: dict[str, Any] = {"name": names[0], "port": port.name, "known": ", ".join(known) or "none"}
