@@ -205,7 +205,7 @@ class Execution:
     def write_data(self) -> list[Diagnostic]:
         """Write values that the program changed back to its data lists, each file whole or not at all.
 
-        Returns warnings, IRL246. Raises IrlxError, IRL247, for a file that is not as it was read; IRL003
+        Returns warnings, IRL264. Raises IrlxError, IRL265, for a file that is not as it was read; IRL003
         for one that cannot be written. Lists before it are written then.
         """
         warnings: list[Diagnostic] = []
@@ -216,7 +216,7 @@ class Execution:
             warnings += new.warnings
             if new.text != found.source.text:
                 if not found.is_as_read():
-                    raise IrlxError(report("IRL247", Place(str(found.path)), path=found.path))
+                    raise IrlxError(report("IRL265", Place(str(found.path)), path=found.path))
                 with AtomicFile(found.path) as file:
                     file.write(new.text.encode("utf-8"))
         return warnings

@@ -108,7 +108,7 @@ NOT_WRITTEN = [
 @pytest.mark.parametrize(("body", "message"), NOT_WRITTEN)
 def test_what_cannot_be_written_stays(files, body, message):
     path = files(body)
-    (warning,) = (d for d in irlx.run(path, write_data=True).diagnostics if d.code == "IRL246")
+    (warning,) = (d for d in irlx.run(path, write_data=True).diagnostics if d.code == "IRL264")
     assert warning.message == message
     assert warning.place.file.endswith("points.dat")
     assert data_of(path) == POINTS
@@ -121,7 +121,7 @@ def test_a_file_that_was_changed_meanwhile_is_not_replaced(files):
     def edit(*_):
         path.with_name("points.dat").write_text(newer, encoding="utf-8")
 
-    with pytest.raises(irlx.IrlxError, match="IRL247"):
+    with pytest.raises(irlx.IrlxError, match="IRL265"):
         irlx.run(path, write_data=True, progress=edit)
     assert data_of(path) == newer
 

@@ -28,7 +28,7 @@ def rewritten(
     """The text of a data list for its variables' present values, where these are not the `first` ones.
 
     A value that is calculated from a changed one is written as it is now, for it would become another one.
-    IRL246 warns of values of which parts are missing, and of those that bounds of arrays depend on.
+    IRL264 warns of values of which parts are missing, and of those that bounds of arrays depend on.
     """
     changed = {key for key, variable in variables.items() if variable.value != first.get(key)}
     bounds = {name for part in found.tree.declarations for name in _names(part.type)}
@@ -48,7 +48,7 @@ def rewritten(
                 why = "bounds of arrays depend on it"
             if why:
                 place = Place.in_text(found.source, name.span)
-                warnings.append(report("IRL246", place, name=name.name, why=why))
+                warnings.append(report("IRL264", place, name=name.name, why=why))
                 changed.discard(name.key)
             elif initial is None:
                 changes.append((name.span.end, name.span.end, f" := {value_text(value)}"))

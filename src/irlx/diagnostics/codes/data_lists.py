@@ -20,9 +20,9 @@ DATA_LISTS = (
         "write DATALIST {name};",
     ),
     error("IRL244", "the data list '{name}' is imported twice", "remove one of the two"),
-    warning("IRL246", "the value of '{name}' is not written back: {why}"),
+    warning("IRL264", "the value of '{name}' is not written back: {why}"),
     error(
-        "IRL247",
+        "IRL265",
         "{path} is not written: the file was changed while the program ran",
         "run the program again",
     ),
