@@ -87,9 +87,12 @@ def digest_of_all(program: str, lists: Sequence[DataListFile]) -> str:
 
 
 def analyse_file(path: PathLike, cell: PathLike | None = None) -> Analysis:
-    """Analysis of a program, module or data list file. Raises ProgramError where the file cannot be read."""
+    """Analysis of a program, module or data list file, with lints.
+
+    Raises ProgramError where the file cannot be read.
+    """
     file = Path(path)
-    return _analysis(file, _content(file), cell, _ListFiles(file))
+    return _analysis(file, _content(file), cell, _ListFiles(file), lints=True)
 
 
 def cell_path(program: Program, given: PathLike | None) -> Path:
@@ -139,7 +142,9 @@ class _ListFiles:
         return DataListFile(found.source, found.tree, *self._read[found.source.name])
 
 
-def _analysis(path: Path, content: bytes, cell: PathLike | None, files: _ListFiles) -> Analysis:
+def _analysis(
+    path: Path, content: bytes, cell: PathLike | None, files: _ListFiles, *, lints: bool = False
+) -> Analysis:
     """Analysis of the bytes of a file. Raises ProgramError for bytes that are no text."""
 
     def cell_names(root: tree.Program) -> tuple[str, ...]:
@@ -149,7 +154,8 @@ def _analysis(path: Path, content: bytes, cell: PathLike | None, files: _ListFil
         return next((frame_names(candidate) for candidate in found), ())
 
     try:
-        return analyse(decode_source(str(path), content), cell_names=cell_names, data_lists=files)
+        text = decode_source(str(path), content)
+        return analyse(text, cell_names=cell_names, data_lists=files, lints=lints)
     except IrlxError as error:
         raise ProgramError(error.diagnostics) from error
 
