@@ -52,10 +52,10 @@ def check_types(
     Without `complete`, parts of the text have been left out.
     """
     if isinstance(root, tree.DataList):
-        check = _checker(source, Joints(len(joints) or None, names=joints), frames, complete=complete)
+        check = type_check(source, Joints(len(joints) or None, names=joints), frames, complete=complete)
         check.data_list(ImportedList(source, root))
         return check.outcome()
-    check = _checker(source, joints_of(root.declarations, joints), frames, complete=complete)
+    check = type_check(source, joints_of(root.declarations, joints), frames, complete=complete)
     check.declare(root.declarations, lists)
     for part in root.declarations:
         if isinstance(part, tree.ProcedureDeclaration | tree.FunctionDeclaration):
@@ -66,7 +66,10 @@ def check_types(
     return check.outcome()
 
 
-def _checker(source: SourceText, joints: Joints, frames: Collection[str], *, complete: bool) -> TypeCheck:
+def type_check(
+    source: SourceText, joints: Joints, frames: Collection[str] = (), *, complete: bool = True
+) -> TypeCheck:
+    """A type check that has looked at nothing yet."""
     types = known_types(joints.number)
     check = TypeCheck(source, Names(types, system_names(types, frames)))
     check.joints, check.complete = joints, complete
