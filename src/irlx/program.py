@@ -86,13 +86,13 @@ def digest_of_all(program: str, lists: Sequence[DataListFile]) -> str:
     return hashlib.sha256(lines.encode("ascii")).hexdigest()
 
 
-def analyse_file(path: PathLike, cell: PathLike | None = None) -> Analysis:
-    """Analysis of a program, module or data list file, with lints.
+def analyse_file(path: PathLike, cell: PathLike | None = None, joints: tuple[str, ...] = ()) -> Analysis:
+    """Analysis of a program, module or data list file, with lints; `joints` are those of its robot, if known.
 
     Raises ProgramError where the file cannot be read.
     """
     file = Path(path)
-    return _analysis(file, _content(file), cell, _ListFiles(file), lints=True)
+    return _analysis(file, _content(file), cell, _ListFiles(file), joints, lints=True)
 
 
 def cell_path(program: Program, given: PathLike | None) -> Path:
@@ -143,7 +143,13 @@ class _ListFiles:
 
 
 def _analysis(
-    path: Path, content: bytes, cell: PathLike | None, files: _ListFiles, *, lints: bool = False
+    path: Path,
+    content: bytes,
+    cell: PathLike | None,
+    files: _ListFiles,
+    joints: tuple[str, ...] = (),
+    *,
+    lints: bool = False,
 ) -> Analysis:
     """Analysis of the bytes of a file. Raises ProgramError for bytes that are no text."""
 
@@ -155,7 +161,7 @@ def _analysis(
 
     try:
         text = decode_source(str(path), content)
-        return analyse(text, cell_names=cell_names, data_lists=files, lints=lints)
+        return analyse(text, cell_names=cell_names, data_lists=files, joints=joints, lints=lints)
     except IrlxError as error:
         raise ProgramError(error.diagnostics) from error
 

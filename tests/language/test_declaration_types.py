@@ -57,7 +57,7 @@ ROWS = {
         ("IRL223", "MAIN_JOINT takes 2 values, found 3", "(1, 2, 3)")
     ],
     "TYPE RECORD REAL: a1, a2; ENDRECORD = MAIN_JOINT; RECORD REAL: a1.max; ENDRECORD = MAIN_JOINT_MAX;": [
-        ("IRL246", "type MAIN_JOINT_MAX is defined with 1 fields, but MAIN_JOINT with 2", "MAIN_JOINT_MAX")
+        ("IRL246", "type MAIN_JOINT_MAX is defined with 1 field, but MAIN_JOINT with 2", "MAIN_JOINT_MAX")
     ],
     "TYPE RECORD REAL: a1; INT: a2; ENDRECORD = MAIN_JOINT;": [
         ("IRL222", "expected REAL for a field of MAIN_JOINT, found INT", "INT")

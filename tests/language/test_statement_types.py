@@ -312,7 +312,7 @@ def test_wrongly_typed(told_of, statement):
             [("IRL222", "expected POSE or POSITION or MAIN_JOINT, found 5 values")],
         ),
         (4, "FREEZESTART 4; FREEZEEND;", []),
-        (4, "FREEZESTART 5; FREEZEEND;", [("IRL305", "there is no joint 5")]),
+        (4, "FREEZESTART 5; FREEZEEND;", [("IRL346", "FREEZESTART names joint 5")]),
         (4, "RECONFIGURATION (1, 2, 3);", [("IRL222", "expected MAIN_JOINT or JOINT, found 3 values")]),
         (4, "m := (1, 2, 3);", [("IRL223", "MAIN_JOINT takes 4 values, found 3")]),
         (4, "lo := (1, 2, 3, 4);", []),

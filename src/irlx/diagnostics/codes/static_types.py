@@ -5,7 +5,7 @@ from irlx.diagnostics.codes.code import Code, error
 STATIC_TYPES: tuple[Code, ...] = (
     error(
         "IRL246",
-        "type {type} is defined with {found} fields, but {other} with {expected}",
+        "type {type} is defined with {found}, but {other} with {expected}",
         "both get one field a joint of the robot",
     ),
     error("IRL247", "RETURN of the function {name} needs a value of type {type}"),

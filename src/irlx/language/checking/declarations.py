@@ -135,12 +135,16 @@ class Declarations(TypeForms):
         return entry
 
     def data_list(self, found: ImportedList) -> None:
-        """Declare the values of a data list, which know the types of the program and each other."""
+        """Declare the values of a data list, which know the types of the program and each other.
+
+        What is referred to inside of it stands in another text than that of the program.
+        """
         kept = self.source, self.names, self.references, self.announced
         own = Names(self.names.types)
         own.functions = self.names.functions
         # What a list may not use, and what stands further down in it, is told with its names.
-        self.source, self.names, self.references, self.announced = found.source, own, [], {}
+        references = self.references if found.source is self.source else []
+        self.source, self.names, self.references, self.announced = found.source, own, references, {}
         for part in found.tree.declarations:
             self._variables(part, part.type, part.variables, "variable", found)
         self.source, self.names, self.references, self.announced = kept

@@ -151,7 +151,7 @@ class Motion(TypeForms):
             found = self.fitted(joint, INT)
             number = found.value
             if most is not None and isinstance(number, int) and found.type is INT and number > most:
-                self.add("IRL305", joint, number=number)
+                self.add("IRL346", joint, number=number, joints=most)
 
     def reconfiguration(self, node: tree.Reconfiguration) -> None:
         """The posture of RECONFIGURATION."""

@@ -8,6 +8,7 @@ from typing import Any
 from irlx.diagnostics import Related
 from irlx.language import tree
 from irlx.language.checking.expressions import Expressions
+from irlx.language.checking.words import count
 from irlx.language.references import Reference
 from irlx.language.symbols import Symbol
 from irlx.language.types import (
@@ -173,4 +174,4 @@ class TypeForms(Expressions):
             other = joints.shown_by
             related = (Related("the type that it must agree with", self.place(other)),)
             data: dict[str, Any] = {"type": name.name, "other": other.name}
-            self.add("IRL246", name, related=related, found=found, expected=expected, **data)
+            self.add("IRL246", name, related=related, found=count(found, "field"), expected=expected, **data)
