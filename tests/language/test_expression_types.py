@@ -223,7 +223,7 @@ BAD = {
     "x := go(1);": ("IRL250", "'go' is a procedure, not a function", "go"),
     "x := go;": ("IRL250", "'go' is a procedure, not a value", "go"),
     "e1 := one(TRUE);": ("IRL222", "expected REAL, found BOOL", "TRUE"),
-    "tr := triple(1, 2);": ("IRL228", "TRIPLE takes 3 values, found 2", "triple(1, 2)"),
+    "tr := triple(1, 2);": ("IRL228", "triple takes 3 values, found 2", "triple(1, 2)"),
     # values that the text tells
     f"i := {INT_MAX + 1};": ("IRL503", f"the number {INT_MAX + 1} leaves the range of INT", f"{INT_MAX + 1}"),
     f"i := {INT_MAX} + 1;": ("IRL503", "the result leaves the range of INT", f"{INT_MAX} + 1"),

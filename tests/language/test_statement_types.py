@@ -311,6 +311,7 @@ def test_wrongly_typed(told_of, statement):
             "MOVE PTP (1, 2, 3, 4, 5);",
             [("IRL222", "expected POSE or POSITION or MAIN_JOINT, found 5 values")],
         ),
+        (4, "MOVE PTP (1, 2);", [("IRL222", "expected POSE or POSITION or MAIN_JOINT, found 2 values")]),
         (4, "FREEZESTART 4; FREEZEEND;", []),
         (4, "FREEZESTART 5; FREEZEEND;", [("IRL346", "FREEZESTART names joint 5")]),
         (4, "RECONFIGURATION (1, 2, 3);", [("IRL222", "expected MAIN_JOINT or JOINT, found 3 values")]),
@@ -328,6 +329,19 @@ def test_joints_are_counted_where_their_number_is_known(joints, statement, wante
     text = f"PROGRAM t; {define} VAR MAIN_JOINT: m; MAIN_JOINT_MIN: lo; BEGIN {statement} ENDPROGRAM"
     found = analyse(source_text("t.irl", text), joints=names if by == "cell" else ())
     assert [(d.code, d.message.split(";")[0]) for d in found.diagnostics] == wanted
+
+
+def test_a_wrong_call_shows_the_declaration():
+    text = program("pick(p);")
+    (found,) = analyse(source_text("t.irl", text)).diagnostics
+    (related,) = found.related
+    assert (found.code, related.message) == ("IRL228", "declared here")
+    assert text[related.place.span.start :].startswith("pick(IN POSE: at")
+
+
+def test_help_where_a_whole_number_is_expected():
+    (found,) = analyse(source_text("t.irl", program("i := x / 2;"))).diagnostics
+    assert found.help == "ROUND and TRUNC make whole numbers, DIV divides them"
 
 
 # ---- inside routines

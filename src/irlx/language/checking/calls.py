@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+from irlx.diagnostics import Related
 from irlx.language import tree
 from irlx.language.checking.context import NOTHING, Context, Typed
 from irlx.language.checking.names import Constant, Entry
@@ -62,7 +65,7 @@ class Calls(Context):
     def _declared(self, entry: Entry, signature: Signature, node: tree.FunctionCall) -> Typed:
         if entry.symbol is not None:
             self.references.append(Reference(node.name.span, entry.symbol, "call"))
-        self.arguments(signature, node.arguments, node)
+        self.arguments(signature, node.arguments, node, self.declared_here(entry))
         return Typed(signature.result or UNKNOWN)
 
     def _built_in(self, node: tree.FunctionCall, signature: Signature) -> Typed:
@@ -76,15 +79,17 @@ class Calls(Context):
     def _constructed(self, node: tree.FunctionCall, type: Type) -> Typed:
         """A record or array made by the name of its type and its parts."""
         arguments = node.arguments
+        symbol = self.names.type_symbol(node.name.key)
+        name = symbol.name.name if symbol is not None else node.name.key.upper()
         if isinstance(type, Record) and not type.pattern:
             parameters = tuple([Parameter("", (part,)) for _, part in type.fields])
             least = 1 if node.name.key in _OPTIONAL_PARTS else len(parameters)
-            found = self.arguments(Signature(node.name.key.upper(), parameters, type, least), arguments, node)
+            found = self.arguments(Signature(name, parameters, type, least), arguments, node)
         elif isinstance(type, Record | Array):
             element = type.element if isinstance(type, Array) else REAL
             size = type.size if isinstance(type, Array) and type.size else len(arguments)
             parameters = (Parameter("", (element,)),) * size
-            found = self.arguments(Signature(node.name.key.upper(), parameters, type, size), arguments, node)
+            found = self.arguments(Signature(name, parameters, type, size), arguments, node)
         else:
             self.unknown_arguments(arguments)
             return Typed(type)
@@ -96,7 +101,11 @@ class Calls(Context):
     # ---- arguments
 
     def arguments(
-        self, signature: Signature, arguments: tuple[tree.Argument, ...], node: tree.Node
+        self,
+        signature: Signature,
+        arguments: tuple[tree.Argument, ...],
+        node: tree.Node,
+        related: tuple[Related, ...] = (),
     ) -> list[Typed]:
         """Types of arguments that a routine takes; none where their number is wrong, which is told."""
         parameters = signature.parameters
@@ -105,8 +114,8 @@ class Calls(Context):
             return []
         if not signature.least <= len(arguments) <= len(parameters):
             self.unknown_arguments(arguments)
-            expected = _expected(signature)
-            self.add("IRL228", node, function=signature.name, expected=expected, found=len(arguments))
+            data: dict[str, Any] = {"function": signature.name, "expected": _expected(signature)}
+            self.add("IRL228", node, related=related, found=len(arguments), **data)
             return []
         return [
             self._argument(argument, parameter, signature)

@@ -23,6 +23,8 @@ class Typed(NamedTuple):
 NOTHING = Typed(UNKNOWN)
 """What is known of an expression that is wrong already or cannot be known."""
 
+_WHOLE_NUMBERS = "ROUND and TRUNC make whole numbers, DIV divides them"
+
 Settled: TypeAlias = "Constant | Entry | None"
 """A value that the text tells, or the variable that holds it."""
 
@@ -75,11 +77,18 @@ class Context:
 
     def mismatch(self, node: tree.Node, expected: str, found: str) -> None:
         """Add the finding on a value of another type than is expected."""
-        self.findings.append(report("IRL222", self.place(node), expected=expected, found=found))
+        help = _WHOLE_NUMBERS if (expected, found) == ("INT", "REAL") else ""
+        self.findings.append(report("IRL222", self.place(node), help=help, expected=expected, found=found))
 
     def place(self, node: tree.Node) -> Place:
         """Place of a node."""
         return Place.in_text(self.source, node.span)
+
+    def declared_here(self, entry: Entry) -> tuple[Related, ...]:
+        """Where a name is declared, to stand with a finding on its use."""
+        if entry.symbol is None or entry.symbol.source is not None:
+            return ()
+        return (Related("declared here", self.place(entry.symbol.name)),)
 
     def text(self, node: tree.Node) -> str:
         """What a program writes for a node."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from irlx.diagnostics import Related
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.language import tree
 from irlx.language.checking.context import NOTHING, Context, Typed
@@ -31,7 +30,7 @@ class Designators(Context):
         """What a name means that is no type; the use is kept. None where it is unknown, which is told."""
         found = self.names.value(name.key)
         if found is None:
-            near = self.announced.pop(name.key, None)
+            near = self.announced.get(name.key)
             if near is not None:
                 self.add("IRL201", name, name=name.name, near=near)
                 return None
@@ -159,7 +158,7 @@ class Designators(Context):
         }
         if entry is not None and entry.kind in fixed:
             self.designated(inner)
-            self.add("IRL249", node, where=where, found=fixed[entry.kind], related=self._declared_here(entry))
+            self.add("IRL249", node, where=where, found=fixed[entry.kind], related=self.declared_here(entry))
             return
         type, entry = self.set_target(inner, "change")
         if entry is not None:
@@ -169,11 +168,6 @@ class Designators(Context):
     def _same(self, node: tree.Node, found: Type, expected: Type | None) -> None:
         if expected is not None and not same_type(found, expected):
             self.mismatch(node, f"a variable of {expected.name}", found.name)
-
-    def _declared_here(self, entry: Entry) -> tuple[Related, ...]:
-        if entry.symbol is None or entry.symbol.source is not None:
-            return ()
-        return (Related("declared here", self.place(entry.symbol.name)),)
 
 
 def _what(node: tree.Argument) -> str:

@@ -113,8 +113,8 @@ class Parentheses(Context):
             self.keep(fitting[0])
             self.add("IRL229", node, candidates=" or ".join(trial.typed.type.name for trial in fitting))
             return NOTHING
-        if fitting or len(trials) == 1:
-            # The one type with that number of values is meant: what is wrong is inside.
+        if fitting or (len(trials) == 1 and len(trials[0].findings) < len(node.items)):
+            # Where some values fit the one type with that number, it is meant: what is wrong is inside.
             return self.keep(fitting[0] if fitting else trials[0])
         for item in node.items:
             self.fitted(item, UNKNOWN)

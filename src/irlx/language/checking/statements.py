@@ -122,7 +122,7 @@ class Statements(Motion, Channels):
         if entry.symbol is not None:
             self.references.append(Reference(node.name.span, entry.symbol, "call"))
         if entry.kind == "procedure" and entry.signature is not None:
-            self.arguments(entry.signature, node.arguments, node)
+            self.arguments(entry.signature, node.arguments, node, self.declared_here(entry))
             return
         self.unknown_arguments(node.arguments)
         found = _KINDS.get(entry.kind)
