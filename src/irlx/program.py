@@ -116,10 +116,13 @@ def digest_of_all(program: str, lists: Sequence[DataListFile], modules: Sequence
     return hashlib.sha256(lines.encode("ascii")).hexdigest()
 
 
-def analyse_file(path: PathLike, cell: PathLike | None = None) -> Analysis:
-    """Analysis of a program, module or data list file. Raises ProgramError where the file cannot be read."""
+def analyse_file(path: PathLike, cell: PathLike | None = None, joints: tuple[str, ...] = ()) -> Analysis:
+    """Analysis of a program, module or data list file, with lints; `joints` are those of its robot, if known.
+
+    Raises ProgramError where the file cannot be read.
+    """
     file = Path(path)
-    return _analysis(file, _content(file), cell, _Beside(file))
+    return _analysis(file, _content(file), cell, _Beside(file), joints, lints=True)
 
 
 def cell_path(program: Program, given: PathLike | None) -> Path:
@@ -219,7 +222,15 @@ class _Beside:
         return analysis
 
 
-def _analysis(path: Path, content: bytes, cell: PathLike | None, files: _Beside) -> Analysis:
+def _analysis(
+    path: Path,
+    content: bytes,
+    cell: PathLike | None,
+    files: _Beside,
+    joints: tuple[str, ...] = (),
+    *,
+    lints: bool = False,
+) -> Analysis:
     """Analysis of the bytes of a file. Raises ProgramError for bytes that are no text."""
 
     def cell_names(root: tree.Program | tree.Module) -> tuple[str, ...]:
@@ -233,7 +244,8 @@ def _analysis(path: Path, content: bytes, cell: PathLike | None, files: _Beside)
         return next((frame_names(candidate) for candidate in found), ())
 
     try:
-        analysis = analyse(decode_source(str(path), content), files, cell_names, files.lists)
+        text = decode_source(str(path), content)
+        analysis = analyse(text, files, cell_names, files.lists, joints=joints, lints=lints)
     except IrlxError as error:
         raise ProgramError(error.diagnostics) from error
     found = (*analysis.diagnostics, *files.findings)

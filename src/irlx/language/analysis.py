@@ -9,12 +9,16 @@ from typing import TypeAlias
 
 from irlx.diagnostics import Diagnostic, Place, SourceText, Span, report
 from irlx.language import tree
+from irlx.language.checking import check_types
+from irlx.language.checking.consequences import standing_alone
 from irlx.language.criteria import check_criterion
 from irlx.language.data_lists import DataListResolver, ImportedList, imports_of, in_order
+from irlx.language.lints import lints_of
 from irlx.language.modules import ImportedModule, ModuleProblem, missing_exports, no_module
 from irlx.language.moves import check_move
 from irlx.language.names import check_names
 from irlx.language.parser import parse
+from irlx.language.references import Reference, RoutineScope
 from irlx.language.switches import check_freeze, check_switches
 from irlx.language.symbols import Symbol
 
@@ -38,8 +42,10 @@ class Analysis:
 
     `tree` is partial after a mistake and None where nothing is left; `symbols` are the program's own
     declarations by casefolded name, `types` the types among them; `comments` are in the order of the text.
-    `data_lists` are those that it imports, in order, as far as they could be read; `modules` all that it
-    needs, each behind those that it imports itself.
+    Both carry their types. `references` are all uses of declared names in the order of the text, without
+    those in data lists; `routines` are the names that procedures and functions declare. `data_lists` are
+    those that it imports, in order, as far as they could be read; `modules` all that it needs, each behind
+    those that it imports itself.
     """
 
     source: SourceText
@@ -50,6 +56,8 @@ class Analysis:
     types: Mapping[str, Symbol] = field(default_factory=dict)
     data_lists: tuple[ImportedList, ...] = ()
     modules: tuple[ImportedModule, ...] = ()
+    references: tuple[Reference, ...] = ()
+    routines: tuple[RoutineScope, ...] = ()
 
     @property
     def has_errors(self) -> bool:
@@ -62,12 +70,17 @@ def analyse(
     resolver: Resolver | None = None,
     cell_names: CellNames | None = None,
     data_lists: DataListResolver | None = None,
+    *,
+    joints: tuple[str, ...] = (),
+    lints: bool = False,
 ) -> Analysis:
     """Parse and check a text; never raises for what a text may hold.
 
     Without a `resolver` imported names are taken as declared and modules are not looked at. What
     `cell_names` gives counts as constants of the program, which its own declarations may hide.
     `data_lists` gives the texts of data lists; without it, one that is imported may hold any name.
+    `joints` are those of the robot where it is known, and with `lints` there are warnings of what is allowed
+    but seldom meant.
     """
     parsed = parse(source)
     if parsed.tree is None:
@@ -78,6 +91,12 @@ def analyse(
     imports = imports_of(parsed.tree, source, data_lists)
     scope, findings = check_names(parsed.tree, source, given, imports, complete=parsed.complete)
     findings += _static_findings(parsed.tree, source)
+    typed = check_types(
+        parsed.tree, source, imports.lists, given, joints, complete=parsed.complete and imports.whole
+    )
+    findings += standing_alone(typed.findings, (*parsed.findings, *imports.findings))
+    if lints and parsed.complete:
+        findings += lints_of(parsed.tree, source, typed)
     if resolver is not None:
         findings += _import_findings(parsed.tree, scope.source, resolver)
     if parsed.complete and isinstance(parsed.tree, tree.Program):
@@ -87,9 +106,11 @@ def analyse(
         parsed.tree,
         in_order((*parsed.findings, *imports.findings, *findings), source, imports.lists),
         parsed.comments,
-        MappingProxyType(scope.values),
-        MappingProxyType(scope.types),
+        MappingProxyType({**scope.values, **typed.symbols}),
+        MappingProxyType({**scope.types, **typed.types}),
         imports.lists,
+        references=typed.references,
+        routines=typed.routines,
     )
 
 
