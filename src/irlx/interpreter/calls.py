@@ -77,7 +77,8 @@ class Calls:
             data = {"function": routine.name, "expected": expected, "found": len(given)}
             raise fail("IRL228", context.source, node.span, **data)
         pairs = zip(given, routine.parameters, strict=True)
-        parts = self._expressions.operands([(a, partial(self._argument, a, p)) for a, p in pairs])
+        name = routine.name
+        parts = self._expressions.operands([(a, partial(self._argument, a, p, name)) for a, p in pairs])
         wrong = first_failing(parts)
         if wrong is not None:
             return wrong
@@ -93,11 +94,12 @@ class Calls:
         assembler.add(node, make)
         return None
 
-    def _argument(self, node: tree.Expression, parameter: Parameter) -> Compiled:
+    def _argument(self, node: tree.Expression, parameter: Parameter, routine: str) -> Compiled:
         if not parameter.by_reference:
             return self._expressions.value(node, parameter.type)
         try:
-            found = self._expressions.designators.cell(node, parameter.name)
+            where = f"the VAR parameter '{parameter.name}' of {routine}"
+            found = self._expressions.designators.cell(node, where)
         except InterpreterError as error:
             return failing(error)
         if found.type == parameter.type:

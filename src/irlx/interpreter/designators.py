@@ -166,13 +166,13 @@ class Designators:
             raise fail("IRL222", source, node.span, **data)
         return stored, way
 
-    def cell(self, node: tree.Expression, name: str) -> Compiled:
-        """What a parameter `name` by reference gets: running it gives a cell of the variable or its part.
+    def cell(self, node: tree.Expression, where: str) -> Compiled:
+        """What a parameter by reference gets, `where` in words: running it gives a cell of the variable or part.
 
-        Raises InterpreterError: IRL515 for what is no variable, IRL211 for a constant.
+        Raises InterpreterError: IRL249 for what is no variable, IRL211 for a constant.
         """
         if not isinstance(node, tree.Designator) or self.signal(node.base) is not None:
-            raise fail("IRL515", self._expressions.source, node.span, name=name)
+            raise fail("IRL249", self._expressions.source, node.span, where=where, found=_what(node))
         stored, way = self._settable(node)
         whole = _cell(stored)
         if not way.steps:
@@ -263,6 +263,18 @@ class Designators:
 
 
 # ---- variables in frames
+
+
+def _what(node: tree.Expression) -> str:
+    """What an expression is that is no variable."""
+    match node:
+        case tree.Designator():
+            return "a signal"
+        case tree.IntLiteral() | tree.RealLiteral():
+            return "a number"
+        case tree.StringLiteral():
+            return "a text"
+    return "an expression"
 
 
 def _whole(stored: Variable | Local) -> Run:

@@ -14,7 +14,7 @@ from irlx.language.checking.consequences import standing_alone
 from irlx.language.criteria import check_criterion
 from irlx.language.data_lists import DataListResolver, ImportedList, imports_of, in_order
 from irlx.language.lints import lints_of
-from irlx.language.modules import ImportedModule, ModuleProblem, missing_exports, no_module
+from irlx.language.modules import ImportedModule, ModuleProblem, exported, missing_exports, no_module
 from irlx.language.moves import check_move
 from irlx.language.names import check_names
 from irlx.language.parser import parse
@@ -91,14 +91,20 @@ def analyse(
     imports = imports_of(parsed.tree, source, data_lists)
     scope, findings = check_names(parsed.tree, source, given, imports, complete=parsed.complete)
     findings += _static_findings(parsed.tree, source)
+    modules, on_imports = _imported(parsed.tree, source, resolver)
     typed = check_types(
-        parsed.tree, source, imports.lists, given, joints, complete=parsed.complete and imports.whole
+        parsed.tree,
+        source,
+        imports.lists,
+        given,
+        joints,
+        modules,
+        complete=parsed.complete and imports.whole,
     )
     findings += standing_alone(typed.findings, (*parsed.findings, *imports.findings))
     if lints and parsed.complete:
         findings += lints_of(parsed.tree, source, typed)
-    if resolver is not None:
-        findings += _import_findings(parsed.tree, scope.source, resolver)
+    findings += on_imports
     if parsed.complete and isinstance(parsed.tree, tree.Program):
         findings += check_switches(parsed.tree, source)
     return Analysis(
@@ -126,8 +132,14 @@ def _static_findings(root: tree.Node, source: SourceText) -> list[Diagnostic]:
     return findings
 
 
-def _import_findings(root: _Root, source: SourceText, resolver: Resolver) -> list[Diagnostic]:
-    findings = []
+def _imported(
+    root: _Root, source: SourceText, resolver: Resolver | None
+) -> tuple[dict[str, Mapping[str, Symbol]], list[Diagnostic]]:
+    """What the modules of a text export, by casefolded names, and the findings on its imports."""
+    modules: dict[str, Mapping[str, Symbol]] = {}
+    findings: list[Diagnostic] = []
+    if resolver is None:
+        return modules, findings
     for declaration in root.declarations:
         if not isinstance(declaration, tree.ImportFrom) or not declaration.module.key:
             continue
@@ -143,4 +155,7 @@ def _import_findings(root: _Root, source: SourceText, resolver: Resolver) -> lis
         findings += no_module(declaration, module.source, module.tree, source)
         if isinstance(module.tree, tree.Module):
             findings += missing_exports(declaration, module.tree, module.source.name, source)
-    return findings
+            known = {**module.types, **module.symbols}
+            names = {name.key for name in exported(module.tree)}
+            modules[declaration.module.key] = {key: known[key] for key in names & known.keys()}
+    return modules, findings

@@ -22,7 +22,7 @@ from irlx.language.types import (
     is_number,
 )
 
-_OPTIONAL_PARTS = frozenset({"robtarget"})
+_OPTIONAL_PARTS = frozenset({"joint", "robtarget"})
 """Constructors that may leave out all but the first part."""
 
 
@@ -109,9 +109,6 @@ class Calls(Context):
     ) -> list[Typed]:
         """Types of arguments that a routine takes; none where their number is wrong, which is told."""
         parameters = signature.parameters
-        if not signature.known:
-            self.unknown_arguments(arguments)
-            return []
         if not signature.least <= len(arguments) <= len(parameters):
             self.unknown_arguments(arguments)
             data: dict[str, Any] = {"function": signature.name, "expected": _expected(signature)}

@@ -19,6 +19,8 @@ from irlx.language.types import known_types
 
 __all__ = ["TypedText", "check_types"]
 
+_NO_MODULES: Mapping[str, Mapping[str, Symbol]] = {}
+
 
 @dataclass(frozen=True)
 class TypedText:
@@ -44,11 +46,13 @@ def check_types(
     lists: Sequence[ImportedList] = (),
     frames: Collection[str] = (),
     joints: tuple[str, ...] = (),
+    modules: Mapping[str, Mapping[str, Symbol]] = _NO_MODULES,
     *,
     complete: bool = True,
 ) -> TypedText:
     """Give everything in a text its type. `joints` are those of the robot where the cell is known.
 
+    `modules` are what those modules export that are known, by casefolded names.
     Without `complete`, parts of the text have been left out.
     """
     if isinstance(root, tree.DataList):
@@ -56,6 +60,7 @@ def check_types(
         check.data_list(ImportedList(source, root))
         return check.outcome()
     check = type_check(source, joints_of(root.declarations, joints), frames, complete=complete)
+    check.modules = modules
     check.declare(root.declarations, lists)
     for part in root.declarations:
         if isinstance(part, tree.ProcedureDeclaration | tree.FunctionDeclaration):

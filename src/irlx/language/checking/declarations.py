@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 
 from irlx.language import tree
 from irlx.language.checking.context import NOTHING, Typed
@@ -25,6 +26,8 @@ class Declarations(TypeForms):
     """
 
     complete = True
+    modules: Mapping[str, Mapping[str, Symbol]] = MappingProxyType({})
+    """What modules export, as far as they are known, by casefolded names."""
 
     def declare(self, declarations: Sequence[tree.Declaration], lists: Sequence[ImportedList] = ()) -> None:
         """Constants and types in the order of the text, signatures, data lists, signals, then variables."""
@@ -55,11 +58,24 @@ class Declarations(TypeForms):
                 self.define(part)
             case tree.ConstDeclaration(type=form, constants=constants):
                 self._variables(part, form, constants, "constant")
-            case tree.ImportFrom(names=names):
+            case tree.ImportFrom(names=names, module=module):
                 for name in names:
-                    self._enter(name, "import", part, UNKNOWN)
+                    self._imported(name, part, self.modules.get(module.key, {}).get(name.key))
             case tree.RobotBinding(name=name):
                 self._enter(name, "robot", part, UNKNOWN)
+
+    def _imported(self, name: tree.Name, part: tree.Node, found: Symbol | None) -> None:
+        """Bring a name of a module in view, with what the module declares it to be."""
+        if found is not None and found.kind == "type":
+            if name.key and found.type is not None and name.key not in self.names.type_symbols:
+                self.set_type(name.key, found.type)
+                self.names.type_symbols[name.key] = Symbol(name, "import", part, None, found.type)
+            return
+        type = found.type if found is not None and found.type is not None else UNKNOWN
+        signature = found.signature if found is not None else None
+        entry = self._enter(name, "import", part, type, signature=signature)
+        if entry is not None and found is not None:
+            entry.kind = found.kind
 
     def _announce(self, declarations: Sequence[tree.Declaration], lists: Sequence[ImportedList]) -> None:
         """Names to come: whoever uses one before it is there is told so."""

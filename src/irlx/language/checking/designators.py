@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.language import tree
 from irlx.language.checking.context import NOTHING, Context, Typed
@@ -10,7 +12,9 @@ from irlx.language.checking.words import count
 from irlx.language.references import Access, Reference
 from irlx.language.types import (
     ANY_BOUNDS,
+    CHAR,
     INT,
+    STRING,
     UNKNOWN,
     Array,
     Record,
@@ -71,6 +75,8 @@ class Designators(Context):
             if type is UNKNOWN:
                 self._indices(selectors[position:])
                 return UNKNOWN
+            if type is STRING and isinstance(selector, tree.Index) and position == len(selectors) - 1:
+                return self._character(selector)
             if isinstance(selector, tree.Index):
                 type = self._element(type, selector, node)
                 position += 1
@@ -101,6 +107,14 @@ class Designators(Context):
             near = near_matches(name, field_names(type)) if isinstance(type, Record) else ""
             self.add("IRL225", fields[0], type=type.name, name=name, near=near)
         return UNKNOWN, len(fields)
+
+    def _character(self, selector: tree.Index) -> Type:
+        """A character of a text, counted from 1."""
+        self._indices((selector,))
+        found = len(selector.indices)
+        if found != 1:
+            self.add("IRL223", selector, type=STRING.name, expected="1 index", found=found)
+        return CHAR
 
     def _element(self, type: Type, selector: tree.Index, node: tree.Designator) -> Type:
         if not isinstance(type, Array):
@@ -138,7 +152,19 @@ class Designators(Context):
         if entry.kind == "system":
             kind = "a system variable that only the robot sets"
             self.add("IRL211", node.base, name=node.base.name, kind=kind)
-        return self.part(entry.type, node), entry
+        if entry.kind == "constant" and entry.symbol is not None and entry.symbol.kind == "import":
+            self.add("IRL211", node.base, name=node.base.name, kind="a constant")
+        type = self.part(entry.type, node)
+        if type is CHAR and self._is_character(entry.type, node):
+            self.mismatch(node, "a variable", "a character of a text")
+        return type, entry
+
+    def _is_character(self, type: Type, node: tree.Designator) -> bool:
+        """Whether a designator of a CHAR means a character of a text."""
+        if not node.selectors or not isinstance(node.selectors[-1], tree.Index):
+            return False
+        whole = replace(node, selectors=node.selectors[:-1])
+        return self.trial(lambda: Typed(self.part(type, whole))).typed.type is STRING
 
     def variable_argument(self, node: tree.Argument, where: str, expected: Type | None) -> None:
         """An argument that the routine sets: only a variable will do, of the very same type."""
@@ -149,10 +175,11 @@ class Designators(Context):
             self.fitted(inner if isinstance(inner, tree.Designator) else node, UNKNOWN)
             self.add("IRL249", node, where=where, found=_what(inner))
             return
-        entry = self.names.value(inner.base.key)
+        entry = self.names.value(inner.base.key) or port_entry(inner.base.key)
         fixed = {
             "constant": "a constant",
             "input": "an input",
+            "output": "an output",
             "procedure": "a procedure",
             "function": "a function",
         }

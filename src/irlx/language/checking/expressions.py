@@ -10,7 +10,6 @@ from irlx.language import tree
 from irlx.language.checking.calls import Calls
 from irlx.language.checking.context import NOTHING, Typed
 from irlx.language.checking.designators import Designators
-from irlx.language.checking.names import Constant
 from irlx.language.checking.operators import (
     COMPARISONS,
     DIVISIONS,
@@ -46,7 +45,7 @@ class Expressions(Designators, Parentheses, Calls):
         if kind is tree.Aggregate or kind is tree.Paren:
             return self.in_parentheses(node, expected)  # type: ignore[arg-type]
         found = _TYPED[kind](self, node)
-        if found.type is expected or fits(found.type, expected) or _becomes(found, expected):
+        if found.type is expected or fits(found.type, expected) or _becomes(node, found.type, expected):
             return found
         self.mismatch(node, expected.name, found.type.name)
         return Typed(expected)
@@ -113,6 +112,13 @@ class Expressions(Designators, Parentheses, Calls):
             return self._short_circuit(node, left)
         right = self._right(node)
         result = binary_type(op, left.type, right.type)
+        if result is None and op in COMPARISONS and CHAR in (left.type, right.type):
+            # A literal of one sign is ordered where it stands beside a CHAR.
+            first, second = (
+                CHAR if _is_sign(side) else found.type
+                for side, found in ((node.left, left), (node.right, right))
+            )
+            result = binary_type(op, first, second)
         if result is None:
             self.add("IRL227", node, op=op, operands=f"{left.type.name} and {right.type.name}")
             return NOTHING
@@ -180,12 +186,18 @@ class Expressions(Designators, Parentheses, Calls):
         return Typed(type)
 
 
-def _becomes(found: Typed, expected: Type) -> bool:
-    """Whether a value becomes one of another type: a text of one sign a CHAR, a count a SEMAPHORE."""
+def _becomes(node: tree.Argument, found: Type, expected: Type) -> bool:
+    """Whether a value becomes one of another type: a literal of one sign a CHAR, a count a SEMAPHORE."""
     if expected is CHAR:
-        value: Constant | None = found.value
-        return found.type is STRING and isinstance(value, str) and len(value) == 1
-    return expected is SEMAPHORE and found.type is INT
+        return _is_sign(node)
+    return expected is SEMAPHORE and found is INT
+
+
+def _is_sign(node: tree.Argument) -> bool:
+    """Whether an expression is a literal text of one sign, in parentheses or not."""
+    while isinstance(node, tree.Paren):
+        node = node.value
+    return isinstance(node, tree.StringLiteral) and len(node.value) == 1
 
 
 _TYPED: dict[type[tree.Node], Callable[[Expressions, Any], Typed]] = {

@@ -105,8 +105,8 @@ def system_names(types: dict[str, Type], frames: Collection[str]) -> Names:
 
 
 def port_entry(key: str) -> Entry | None:
-    """What the name of a port means that is not declared; numbers of analogue ones may be INT or REAL."""
+    """What the name of a port means that is not declared."""
     if not is_port_name(key):
         return None
-    type = UNKNOWN if key.startswith("a") else BOOL
+    type = REAL if key.startswith("a") else BOOL
     return Entry("input" if "in" in key else "output", type)

@@ -42,6 +42,8 @@ def _table() -> dict[tuple[str, str, str], Type]:
     for left in (CHAR, STRING):
         for right in (CHAR, STRING):
             add("= <>", left, right, BOOL)
+            add("+", left, right, STRING)
+    add("< > <= >=", CHAR, CHAR, BOOL)
     add("+ -", POSITION, POSITION, POSITION)
     add("+ -", POSE, POSITION, POSE)
     add("@", POSE, POSE, POSE)

@@ -11,11 +11,10 @@ from irlx.language.checking.case_labels import twice_chosen
 from irlx.language.checking.channels import Channels
 from irlx.language.checking.motion import Motion
 from irlx.language.references import Reference
-from irlx.language.types import BOOL, CHAR, INT, REAL, STRING, UNKNOWN, Type, same_type
+from irlx.language.types import BOOL, CHAR, INT, REAL, STRING, UNKNOWN, Type, is_number, same_type
 
 _CHOOSING: tuple[Type, ...] = (INT, CHAR, BOOL, STRING)
 _KINDS = {
-    "function": "a function",
     "variable": "a variable",
     "constant": "a constant",
     "parameter": "a parameter",
@@ -72,25 +71,31 @@ class Statements(Motion, Channels):
         type, entry = self.set_target(node.variable)
         if entry is not None:
             entry.set(None, whole=False)
-        if type is not INT and type is not UNKNOWN:
-            self.mismatch(node.variable, "an INT variable for FOR", type.name)
-        # Of a REAL variable one thing is wrong, not its bounds as well.
-        expected = UNKNOWN if type is not INT else INT
-        self.fitted(node.start, expected)
-        self.fitted(node.stop, expected)
-        if node.step is not None and self.fitted(node.step, expected).value == 0:
-            self.add("IRL505", node.step, param="STEP", expected="other than 0", value="0")
+        if not is_number(type) and type is not UNKNOWN:
+            self.mismatch(node.variable, "a variable of type INT or REAL", type.name)
+            # One thing is wrong, not the bounds as well.
+            type = UNKNOWN
+        self.fitted(node.start, type)
+        self.fitted(node.stop, type)
+        if node.step is not None:
+            value = self.fitted(node.step, type).value
+            if isinstance(value, int | float) and not isinstance(value, bool) and value <= 0:
+                shown = f"{value:g}" if isinstance(value, float) else str(value)
+                self.add("IRL505", node.step, param="STEP", expected="greater than 0", value=shown)
         self._later(node.body)
 
     def _case(self, node: tree.Case) -> None:
         type = self.typed(node.selector).type
         if not any(same_type(type, possible) for possible in _CHOOSING):
-            self.mismatch(node.selector, "INT, CHAR, BOOL or STRING after CASE", type.name)
+            self.mismatch(node.selector, "INT, CHAR, STRING or BOOL", type.name)
             type = UNKNOWN
         labels = []
         for branch in node.branches:
             for label in branch.labels:
                 ends = (label.lower, label.upper) if isinstance(label, tree.Range) else (label, label)
+                if isinstance(label, tree.Range) and type in (BOOL, STRING):
+                    self.mismatch(label, "INT or CHAR before a CASE with ranges", type.name)
+                    continue
                 low = self.fitted(ends[0], type).value
                 high = low if ends[0] is ends[1] else self.fitted(ends[1], type).value
                 labels.append((label, low, high))
@@ -121,7 +126,8 @@ class Statements(Motion, Channels):
             return
         if entry.symbol is not None:
             self.references.append(Reference(node.name.span, entry.symbol, "call"))
-        if entry.kind == "procedure" and entry.signature is not None:
+        if entry.signature is not None:
+            # A function stands here as well; its value is dropped.
             self.arguments(entry.signature, node.arguments, node, self.declared_here(entry))
             return
         self.unknown_arguments(node.arguments)

@@ -132,15 +132,18 @@ class TypeForms(Expressions):
             return
         if key in JOINT_RECORDS:
             self._check_joint_type(part, type)
-        self.names.types[key] = type
+        self.set_type(key, type)
         self.names.type_symbols[key] = Symbol(name, "type", part, None, type)
+
+    def set_type(self, key: str, type: Type) -> None:
+        """Give a name the meaning of a type from here on."""
+        self.names.types[key] = type
         if key == "main_joint":
             self._joints_defined(type)
 
     def _joints_defined(self, main: Type) -> None:
         types = self.names.types
-        additional = types["add_joint"]
-        types["joint"] = joint_type(main, additional) if isinstance(additional, Record) else UNKNOWN
+        types["joint"] = joint_type(main)
         self.names.functions = built_in_functions(types)
         actual = self.names.value("r_joint_act")
         if actual is not None:

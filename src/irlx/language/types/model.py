@@ -105,5 +105,6 @@ def _same_ranges(found: Array, expected: Array) -> bool:
 
 
 def fits(found: Type, expected: Type) -> bool:
-    """Whether a value of type `found` may stand where `expected` is: INT becomes REAL, never back."""
-    return found is expected or (found is INT and expected is REAL) or same_type(found, expected)
+    """Whether a value of type `found` may stand where `expected` is: INT becomes REAL and CHAR STRING."""
+    becomes = (found is INT and expected is REAL) or (found is CHAR and expected is STRING)
+    return found is expected or becomes or same_type(found, expected)

@@ -28,8 +28,7 @@ POSE = Record("POSE", (("POS", POSITION), ("ORI", ORIENTATION)))
 ADD_JOINT = Record("ADD_JOINT", ())
 """Additional joints of a robot that has none."""
 
-_ANY_ADD_JOINT = Record("ADD_JOINT", (), "AA{}")
-_TURNS = Array((ANY_BOUNDS,), INT)
+_ANY_TURNS = Array((ANY_BOUNDS,), INT)
 
 JOINT_RECORDS = {
     "main_joint": "A{}",
@@ -64,24 +63,21 @@ _FURTHER: dict[str, Type] = {
 def predefined_types(joints: int) -> dict[str, Type]:
     """Types that a running program knows, by casefolded name, for a robot of this number of joints."""
     types = _SIMPLE | {key: joint_record(key, joints) for key in JOINT_RECORDS}
-    types |= {"char": CHAR, "character": CHAR, "add_joint": ADD_JOINT}
-    types["joint"] = joint_type(types["main_joint"])
-    types["robtarget"] = _robtarget(Array(((1, joints),), INT), ADD_JOINT)
-    return types
+    return types | {"char": CHAR, "character": CHAR} | _postures(types["main_joint"], joints)
 
 
 def known_types(joints: int | None) -> dict[str, Type]:
     """Types that the text of a program knows, by casefolded name; `joints` None: the robot is not known."""
     types = _SIMPLE | _FURTHER | {key: joint_record(key, joints) for key in JOINT_RECORDS}
-    types["add_joint"] = _ANY_ADD_JOINT
-    types["joint"] = joint_type(types["main_joint"], _ANY_ADD_JOINT)
-    types["robtarget"] = _robtarget(_TURNS, _ANY_ADD_JOINT)
-    return types
+    return types | _postures(types["main_joint"], joints)
 
 
-def _robtarget(turns: Array, additional: Record) -> Record:
-    """A pose, marks of its posture, and one whole number of turns a joint."""
-    return Record("ROBTARGET", (("PSE", POSE), ("STATUS", INT), ("TURNS", turns), ("A_JOINT", additional)))
+def _postures(main: Type, joints: int | None) -> dict[str, Type]:
+    """JOINT, and ROBTARGET: a pose, marks of its posture, and one whole number of turns a joint."""
+    turns = _ANY_TURNS if joints is None else Array(((1, joints),), INT)
+    fields = (("PSE", POSE), ("STATUS", INT), ("TURNS", turns), ("A_JOINT", ADD_JOINT))
+    robtarget = Record("ROBTARGET", fields)
+    return {"add_joint": ADD_JOINT, "joint": joint_type(main), "robtarget": robtarget}
 
 
 def joint_record(key: str, joints: int | None) -> Record:
@@ -92,6 +88,6 @@ def joint_record(key: str, joints: int | None) -> Record:
     return _reals(key.upper(), *(pattern.format(number) for number in range(1, joints + 1)))
 
 
-def joint_type(main: Type, additional: Record = ADD_JOINT) -> Record:
+def joint_type(main: Type) -> Record:
     """JOINT with a type of main joints."""
-    return Record("JOINT", (("M_JOINT", main), ("A_JOINT", additional)))
+    return Record("JOINT", (("M_JOINT", main), ("A_JOINT", ADD_JOINT)))

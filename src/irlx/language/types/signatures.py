@@ -23,7 +23,6 @@ class Signature:
     """Parameters and result of a routine; `result` is None for a procedure.
 
     `least` is the smallest number of arguments. With `like_first` the result has the type of the first one.
-    `known` is False where a routine takes what cannot be told from here.
     """
 
     name: str
@@ -31,7 +30,6 @@ class Signature:
     result: Type | None
     least: int
     like_first: bool = False
-    known: bool = True
 
 
 _ANGLES = "SQRT SIN COS TAN ASIN ACOS ATAN EXP LN"
@@ -59,11 +57,11 @@ def built_in_functions(types: Mapping[str, Type]) -> dict[str, Signature]:
         ),
         *(_signature(f"QUAT{part}", REAL, ORIENTATION) for part in "ABCD"),
         *(_signature(f"VECTOR{part}", POSITION, ORIENTATION) for part in "NOA"),
-        *(_signature(f"ANGLE{part}", REAL, UNKNOWN, ORIENTATION) for part in "XYZ"),
+        *(_signature(f"ANGLE{part}", REAL, STRING, ORIENTATION) for part in "XYZ"),
         _signature("ORIQUAT", ORIENTATION, REAL, REAL, REAL, REAL),
         _signature("ORIVANG", ORIENTATION, POSITION, REAL),
         _signature("ORIMAT", ORIENTATION, POSITION, POSITION, POSITION),
-        Signature("ORIRS", (), ORIENTATION, 0, known=False),
+        _signature("ORIRS", ORIENTATION, POSITION, POSITION, POSITION),
         _signature("ROTANGLE", REAL, ORIENTATION),
         _signature("ROTAXIS", POSITION, ORIENTATION),
         _signature("INV", POSE, (POSE, ORIENTATION), like_first=True),
