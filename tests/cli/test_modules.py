@@ -162,10 +162,10 @@ WRONG = [
     ),
     (
         "FROM tools IMPORT x;",
-        {"tools_irl": "MODULE tools; EXPORT x; PROCEDURE x; BEGIN WAIT 1 SEC; ENDPROC; ENDMODULE"},
+        {"tools_irl": "MODULE tools; EXPORT x; PROCEDURE x; BEGIN OBSTACLE a; ENDPROC; ENDMODULE"},
         [
-            "tools.irl:1:44: warning IRL591: this version of irlx reads WAIT but does not execute it yet; "
-            "a run would end here"
+            "tools.irl:1:44: warning IRL591: this version of irlx reads OBSTACLE but does not execute it "
+            "yet; a run would end here"
         ],
     ),
 ]
@@ -184,7 +184,9 @@ def test_a_module_that_is_a_folder(files):
 
 
 def test_errors_of_a_run_are_told_in_the_module(files, capsys):
-    tools = "MODULE tools; EXPORT half;\nFUNCTION half(REAL: x): REAL; BEGIN RETURN x / 0; ENDFCT;\nENDMODULE"
+    tools = """MODULE tools; EXPORT half;
+FUNCTION half(REAL: x): REAL; BEGIN RETURN x / (x - x); ENDFCT;
+ENDMODULE"""
     path = files(
         f"FROM tools IMPORT half; VAR {HOME}; REAL: y;", "MOVE LIN home; y := half(3);", tools_irl=tools
     )

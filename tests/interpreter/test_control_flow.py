@@ -3,6 +3,8 @@
 import pytest
 
 from irlx.blocks import HaltBlock, MoveBlock, PauseBlock
+from irlx.language.analysis import analyse
+from irlx.language.source import source_text
 
 pytestmark = pytest.mark.req("LANG-40")
 
@@ -19,9 +21,11 @@ RUNS = [
     ("IF TRUE THEN ENDIF; IF FALSE THEN ELSE ENDIF; i := 1;", {"i": 1}),
     ("CASE n OF WHEN 1: i := 1; WHEN 3: i := 3; ENDCASE;", {"i": 3}),
     ("CASE n OF WHEN 1, 2: i := 1; WHEN 5, 3, 4: i := 3; ENDCASE;", {"i": 3}),
-    ("CASE n OF WHEN 1..2: i := 1; WHEN 3..9: i := 3; WHEN 3: i := 4; ENDCASE;", {"i": 3}),
-    ("CASE n OF WHEN 3: i := 3; WHEN 1..5: i := 1; ENDCASE;", {"i": 3}),
-    ("CASE n OF WHEN 5..1: i := 1; DEFAULT: i := 9; ENDCASE;", {"i": 9}),
+    ("CASE n OF WHEN 1..2: i := 1; WHEN 3..9: i := 3; WHEN 10: i := 4; ENDCASE;", {"i": 3}),
+    # Of labels that the text does not tell, the first one counts; a range may turn out to be empty.
+    ("CASE n OF WHEN 1..k + 2: i := 1; WHEN k + 3..9: i := 3; WHEN n: i := 4; ENDCASE;", {"i": 3}),
+    ("CASE n OF WHEN n: i := 3; WHEN 1..5: i := 1; ENDCASE;", {"i": 3}),
+    ("CASE n OF WHEN n + 2..n - 2: i := 1; DEFAULT: i := 9; ENDCASE;", {"i": 9}),
     ("CASE n OF WHEN -3..-1: i := 1; ENDCASE; k := 1;", {"i": 0, "k": 1}),
     ("CASE n * 2 OF WHEN n + 3: i := 1; ENDCASE;", {"i": 1}),
     ("CASE c OF WHEN 'a': i := 1; WHEN 'b': i := 2; ENDCASE;", {"i": 2}),
@@ -92,8 +96,33 @@ def test_what_is_wrong(run_error, body, expected):
     assert run_error(VARIABLES, body) == expected
 
 
+CHOSEN_BEFORE = [
+    (
+        "CASE n OF WHEN 1..2: i := 1; WHEN 3..9: i := 3; WHEN 3: i := 4; ENDCASE;",
+        ("IRL252", "3 is chosen by an earlier label of this CASE", "3"),
+    ),
+    (
+        "CASE n OF WHEN 3: i := 3; WHEN 1..5: i := 1; ENDCASE;",
+        ("IRL252", "1..5 is chosen by an earlier label of this CASE", "1..5"),
+    ),
+    (
+        "CASE n OF WHEN 5..1: i := 1; DEFAULT: i := 9; ENDCASE;",
+        ("IRL508", "the range 5..1 is empty", "5..1"),
+    ),
+]
+
+
+@pytest.mark.parametrize(("body", "expected"), CHOSEN_BEFORE)
+def test_labels_are_judged_before_the_program_runs(body, expected):
+    text = f"PROGRAM t;\n{VARIABLES}\nBEGIN\n{body}\nENDPROGRAM"
+    (found,) = (d for d in analyse(source_text("t.irl", text)).diagnostics if d.is_error)
+    assert (found.code, found.message, text[found.place.span.start : found.place.span.end]) == expected
+
+
 def test_what_is_wrong_is_told_when_the_program_gets_there(final):
-    assert final(VARIABLES, "IF n = 4 THEN x := 'a'; WAIT 3 SEC; ELSE k := 1; ENDIF;")["k"] == 1
+    assert (
+        final(VARIABLES, "IF n = 4 THEN k := a[n + 1]; MOVE_INC LIN (1, 2, 3); ELSE k := 1; ENDIF;")["k"] == 1
+    )
 
 
 def test_blocks_come_as_their_statements_run(blocks):

@@ -125,8 +125,8 @@ WRONG = {
     "REAL: a;\nREAL: b := a;": "3:12 IRL501 'a' has no value yet",
     "ARRAY [3..1] OF INT: a;": "2:8 IRL508 the range 3..1 is empty",
     "SEMAPHORE: s;": "2:1 IRL590 this version of irlx reads the type SEMAPHORE but does not execute it yet",
-    "REAL: a := CLEARANCE(1);": "2:12 IRL590 this version of irlx reads the function CLEARANCE but does not "
-    "execute it yet",
+    "MAIN_JOINT: j; REAL: a := CLEARANCE(j);": "2:27 IRL590 this version of irlx reads the "
+    "function CLEARANCE but does not execute it yet",
 }
 
 

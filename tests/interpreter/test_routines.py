@@ -99,7 +99,7 @@ WRONG = [
     ("i := fresh(1);", ("IRL228", "fresh takes 0 values, found 1", "fresh(1)")),
     (
         "set(3, 4);",
-        ("IRL515", "the parameter target is the caller's own variable: a value cannot stand for it", "3"),
+        ("IRL249", "the VAR parameter 'target' of set needs a variable, found a number", "3"),
     ),
     ("set(ten, 4);", ("IRL211", "'ten' is a constant and cannot be set", "ten")),
     ("set(x, 4);", ("IRL222", "expected INT, found REAL", "x")),

@@ -81,7 +81,10 @@ GOOD = [
     "MOVE LIN p WITH TOLERANCE bands;",
     "CRITERION manipulability WEIGHT := i; CRITERIONEND manipulability;",
     # ports that are not declared
-    "x := AIN_3 + 1; i := AIN_4;",
+    "x := AIN_3 + 1; AOUT_4 := i; AOUT_5 := x; OUT_2 := IN_1;",
+    "FOR x := 1 TO 3.5 STEP 0.5 DO b := TRUE; ENDFOR;",
+    "FOR d.r := i DOWNTO j DO b := TRUE; ENDFOR;",
+    "above(p, 3);",
 ]
 
 
@@ -111,23 +114,38 @@ BAD = {
         "2.5",
     ),
     # FOR
-    "FOR x := 1 TO 3 DO b := TRUE; ENDFOR;": ("IRL222", "expected an INT variable for FOR, found REAL", "x"),
+    "FOR b := 1 TO 3 DO x := 1; ENDFOR;": (
+        "IRL222",
+        "expected a variable of type INT or REAL, found BOOL",
+        "b",
+    ),
+    "FOR x := b TO 3 DO b := TRUE; ENDFOR;": ("IRL222", "expected REAL, found BOOL", "b"),
     "FOR i := 1.5 TO 3 DO b := TRUE; ENDFOR;": ("IRL222", "expected INT, found REAL", "1.5"),
     "FOR i := 1 TO x DO b := TRUE; ENDFOR;": ("IRL222", "expected INT, found REAL", "x"),
     "FOR i := 1 TO 3 STEP 0.5 DO b := TRUE; ENDFOR;": ("IRL222", "expected INT, found REAL", "0.5"),
     "FOR i := 1 TO 3 STEP 0 DO b := TRUE; ENDFOR;": (
         "IRL505",
-        "STEP must be other than 0, found 0",
+        "STEP must be greater than 0, found 0",
         "0",
+    ),
+    "FOR x := 3 DOWNTO 1 STEP -0.5 DO b := TRUE; ENDFOR;": (
+        "IRL505",
+        "STEP must be greater than 0, found -0.5",
+        "-0.5",
     ),
     # CASE
     "CASE x OF WHEN 1: b := TRUE; ENDCASE;": (
         "IRL222",
-        "expected INT, CHAR, BOOL or STRING after CASE, found REAL",
+        "expected INT, CHAR, STRING or BOOL, found REAL",
         "x",
     ),
     "CASE i OF WHEN 1, 'a': b := TRUE; ENDCASE;": ("IRL222", "expected INT, found STRING", "'a'"),
     "CASE k OF WHEN 'ab': b := TRUE; ENDCASE;": ("IRL222", "expected CHAR, found STRING", "'ab'"),
+    "CASE s OF WHEN 'a'..'b': b := TRUE; ENDCASE;": (
+        "IRL222",
+        "expected INT or CHAR before a CASE with ranges, found STRING",
+        "'a'..'b'",
+    ),
     "CASE i OF WHEN 5..3: b := TRUE; ENDCASE;": ("IRL508", "the range 5..3 is empty", "5..3"),
     "CASE i OF WHEN 1: b := TRUE; WHEN 2, 1: b := FALSE; ENDCASE;": (
         "IRL252",
@@ -179,7 +197,12 @@ BAD = {
     "pick(p, 3, x);": ("IRL222", "expected a variable of INT, found REAL", "x"),
     "grow(i, d);": ("IRL222", "expected a variable of REAL, found INT", "i"),
     "grow(x, p);": ("IRL222", "expected a variable of pair, found POSE", "p"),
-    "above(p, 3);": ("IRL250", f"'above' is {NOT_A_PROCEDURE}", "above"),
+    "above(p, b);": ("IRL222", "expected REAL, found BOOL", "b"),
+    "pick(p, 3, spindle);": (
+        "IRL249",
+        "the VAR parameter 'count' of pick needs a variable, found an output",
+        "spindle",
+    ),
     "i;": ("IRL250", "'i' is a variable, not a procedure", "i"),
     "four(1);": ("IRL250", "'four' is a constant, not a procedure", "four"),
     "pick(p:3, 3, i);": ("IRL222", "expected a value without a layout, found one with :width", "p:3"),

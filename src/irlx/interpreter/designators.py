@@ -167,7 +167,9 @@ class Designators:
         return stored, way
 
     def cell(self, node: tree.Expression, where: str) -> Compiled:
-        """What a parameter by reference gets, `where` in words: running it gives a cell of the variable or part.
+        """What a parameter by reference gets: running it gives a cell of the variable or its part.
+
+        `where` tells in words what needs the variable.
 
         Raises InterpreterError: IRL249 for what is no variable, IRL211 for a constant.
         """

@@ -14,7 +14,7 @@ STATIC_TYPES: tuple[Code, ...] = (
     error(
         "IRL250",
         "'{name}' is {found}, not {expected}",
-        "a procedure is called by a statement of its own, a function inside an expression",
+        "a procedure is called by a statement of its own and has no value",
     ),
     error("IRL251", "the constant '{name}' has no value", "write CONST type: name := value;"),
     error("IRL252", "{label} is chosen by an earlier label of this CASE"),

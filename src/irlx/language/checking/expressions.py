@@ -96,7 +96,7 @@ class Expressions(Designators, Parentheses, Calls):
         while isinstance(left, tree.Binary):
             chain.append(left)
             left = left.left
-        found = self.typed(left)
+        found = self._leftmost(left, chain[-1].op)
         for binary in reversed(chain):
             found = self._applied(binary, found)
         if inside:
@@ -134,8 +134,15 @@ class Expressions(Designators, Parentheses, Calls):
             return Typed(result)
         return self._in_range(node, Typed(result, binary_value(op, left.value, right.value, result)))
 
+    def _leftmost(self, left: tree.Expression, op: str) -> Typed:
+        if op in _SHORT and isinstance(left, tree.Aggregate | tree.Paren):
+            return self.fitted(left, BOOL)
+        return self.typed(left)
+
     def _right(self, node: tree.Binary) -> Typed:
         right = node.right
+        if node.op in _SHORT and isinstance(right, tree.Aggregate | tree.Paren):
+            return self.fitted(right, BOOL)
         return self._binary(right, inside=True) if isinstance(right, tree.Binary) else self.typed(right)
 
     def _compared(self, node: tree.Binary, left: Type, right: Type) -> None:
