@@ -17,27 +17,30 @@ PathLike = str | os.PathLike[str]
 def check(program: PathLike, cell: PathLike | None = None) -> list[Diagnostic]:
     """All findings on a program, and on a cell file where one is given; raises nothing for its input.
 
-    Names of frames come from `cell`, or from the cell that a run would find. Without `cell`
-    this loads neither numpy nor Pinocchio.
+    Names of frames come from `cell`, or from the cell that a run would find; a `cell` that is given also
+    tells how many joints the robot has. Without `cell` this loads neither numpy nor Pinocchio.
     """
+    joints, of_cell = _cell_findings(cell) if cell is not None else ((), [])
     try:
-        analysis = analyse_file(program, cell)
+        analysis = analyse_file(program, cell, joints)
     except ProgramError as error:
         return list(error.diagnostics)
     found = list(analysis.diagnostics)
     if isinstance(analysis.tree, tree.Program):
-        later = unsupported(analysis.tree, analysis.source, analysis.data_lists)
+        later = unsupported(analysis.tree, analysis.source, analysis.data_lists, analysis.modules)
         kept, unused = without_ignored(later, analysis.ignores)
         found += kept
         found += [unused_finding(one) for one in unused if one.place.text is analysis.source]
-    return found + _cell_findings(cell) if cell is not None else found
+    return found + of_cell
 
 
-def _cell_findings(cell: PathLike) -> list[Diagnostic]:
+def _cell_findings(cell: PathLike) -> tuple[tuple[str, ...], list[Diagnostic]]:
+    """Joints of a cell, none where it cannot be used, and the findings on it."""
     # Imported here: validating a cell loads numpy, and most checks have no cell.
     from irlx.cell.load import load_cell
 
     try:
-        return list(load_cell(Path(cell)).warnings)
+        loaded = load_cell(Path(cell))
     except IrlxError as error:
-        return list(error.diagnostics)
+        return (), list(error.diagnostics)
+    return loaded.robot.joint_names, list(loaded.warnings)

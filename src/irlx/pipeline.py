@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from math import inf
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any
 
 import numpy as np
@@ -17,13 +17,15 @@ from irlx.blocks import Block, Origin, Question
 from irlx.cell.cell import Cell
 from irlx.cell.errors import CellError
 from irlx.cell.find import is_file
+from irlx.cell.input_file import read_input_file
 from irlx.cell.load import load_cell
 from irlx.cell.setting import setting_of
 from irlx.diagnostics import Diagnostic, IrlxError, Place, Span, report
 from irlx.diagnostics.diagnostic import near_matches
-from irlx.interpreter.interpret import interpret
+from irlx.interpreter.interpret import MAX_STEPS, Interpretation
 from irlx.pacing.explanation import TickExplanation
 from irlx.pacing.explanation import explain_tick as explain_row
+from irlx.pacing.inputs import InputFunction, Inputs
 from irlx.pacing.pacer import Pacer, PacingSetup
 from irlx.pacing.rows import MotionRows
 from irlx.program import Program, ProgramError, cell_path, load
@@ -33,11 +35,15 @@ from irlx.report.run import Run, RunError, RunInterrupted
 from irlx.robot.equality import Constraint, LinearConstraint
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.registered_constraints import registered_constraints
+from irlx.streams.atomic import AtomicFile
 from irlx.streams.joint_stream import FORMAT_VERSION, StreamHeader
 from irlx.streams.sample import Sample
 
 Array = NDArray[np.float64]
 PathLike = str | os.PathLike[str]
+InputsGiven = InputFunction | Mapping[str, Sequence[tuple[float, float]]] | PathLike | None
+"""A function of name and time (s), traces by name (times in s with the value from each on), or a CSV file."""
+
 Progress = Callable[[Block, float], None]
 """Called after each block with the block and the simulated time so far, s."""
 
@@ -49,13 +55,16 @@ LONGEST_TICK_MS = LONGEST_TICK * 1e3
 class Job:
     """A program and the cell it runs in, checked against each other; tick in ns.
 
-    A move may take `max_slow` times as long as programmed.
+    A move may take `max_slow` times as long as programmed, the program may execute `max_steps` statements;
+    `inputs` are the cell's with those of the caller.
     """
 
     program: Program
     cell: Cell
     tick_ns: int
     max_slow: float = inf
+    max_steps: int = MAX_STEPS
+    inputs: Inputs = field(default_factory=Inputs)
 
 
 def prepare(
@@ -63,11 +72,13 @@ def prepare(
     cell: PathLike | None = None,
     tick_ms: float | None = None,
     max_slow: float | None = None,
+    max_steps: int | None = None,
+    inputs: InputsGiven = None,
 ) -> Job:
     """Load what a run needs.
 
     `cell` None: the file that SYSTEM SPECIFICATION names, else the program's own name with .toml.
-    Raises ProgramError, CellError, or IrlxError with IRL006 for a tick or `max_slow` out of range.
+    Raises ProgramError, CellError, or IrlxError with IRL006 for a number out of range.
     """
     if not isinstance(program, Program):
         program = _loaded(program, cell)
@@ -76,12 +87,32 @@ def prepare(
         cause = "a move cannot be faster than programmed: at least 1"
         raise IrlxError(report("IRL006", option="--max-slow", value=f"{max_slow:g}", cause=cause))
     slowest = inf if max_slow is None else max_slow
+    said = inputs_of(loaded, inputs)
+    steps = MAX_STEPS if max_steps is None else max_steps
+    if steps < 1:
+        raise IrlxError(report("IRL006", option="--max-steps", value=f"{steps}", cause="at least 1"))
     if tick_ms is None:
-        return Job(program, loaded, loaded.tick_ns, slowest)
+        return Job(program, loaded, loaded.tick_ns, slowest, steps, said)
     if not LEAST_TICK_MS <= tick_ms <= LONGEST_TICK_MS:
         cause = f"a tick lasts {LEAST_TICK_MS:g} to {LONGEST_TICK_MS:g} ms"
         raise IrlxError(report("IRL006", option="--tick", value=f"{tick_ms:g}", cause=cause))
-    return Job(program, loaded, round(tick_ms * 1e6), slowest)
+    return Job(program, loaded, round(tick_ms * 1e6), slowest, steps, said)
+
+
+def inputs_of(cell: Cell, given: InputsGiven) -> Inputs:
+    """What inputs say: first `given`, a function, traces by name or the path of a CSV; else the cell.
+
+    Raises CellError for a file that is no such CSV.
+    """
+    if callable(given):
+        return Inputs(cell.inputs, given)
+    if isinstance(given, str | os.PathLike):
+        return Inputs({**cell.inputs, **read_input_file(Path(given))})
+    own = {
+        name.casefold(): tuple((float(at), float(value)) for at, value in trace)
+        for name, trace in (given or {}).items()
+    }
+    return Inputs({**cell.inputs, **own})
 
 
 def _loaded(path: PathLike, cell: PathLike | None) -> Program:
@@ -112,10 +143,13 @@ class Execution:
         cell = job.cell
         dt = job.tick_ns / 1e9
         setup = PacingSetup(
-            kinematics_of(cell), cell.limits, cell.weights, cell.start, dt, max_slow=job.max_slow
+            kinematics_of(cell), cell.limits, cell.weights, cell.start, dt, (), job.max_slow, job.inputs
         )
         self.kinematics = setup.kinematics
         self._pacer = Pacer(setup, self._locate)
+        texts = (job.program.source, *(module.source for module in job.program.modules))
+        self._interpretation: Interpretation | None = None
+        self._texts = {PurePath(text.name).name: text for text in texts}
 
     def __iter__(self) -> Iterator[Executed]:
         """Execute the program block by block. Raises IrlxError where it cannot go on (IRL090: by a fault)."""
@@ -153,7 +187,11 @@ class Execution:
     def _blocks(self, answer: Callable[[Question], tuple[float, ...]]) -> Iterator[Block]:
         """Blocks as the interpreter yields them, its questions answered on the way."""
         job, program = self.job, self.job.program
-        source = interpret(program.tree, program.source, setting_of(job.cell), program.data_lists)
+        setting = setting_of(job.cell)
+        ready = Interpretation(
+            program.tree, program.source, setting, program.data_lists, program.modules, job.max_steps
+        )
+        self._interpretation, source = ready, ready.run()
         reply = None
         while True:
             try:
@@ -163,6 +201,25 @@ class Execution:
             reply = answer(item) if isinstance(item, Question) else None
             if isinstance(item, Block):
                 yield item
+
+    def write_data(self) -> list[Diagnostic]:
+        """Write values that the program changed back to its data lists, each file whole or not at all.
+
+        Returns warnings, IRL264. Raises IrlxError, IRL265, for a file that is not as it was read; IRL003
+        for one that cannot be written. Lists before it are written then.
+        """
+        warnings: list[Diagnostic] = []
+        if self._interpretation is None:
+            return warnings
+        for found in self.job.program.all_lists:
+            new = self._interpretation.rewritten(found)
+            warnings += new.warnings
+            if new.text != found.source.text:
+                if not found.is_as_read():
+                    raise IrlxError(report("IRL265", Place(str(found.path)), path=found.path))
+                with AtomicFile(found.path) as file:
+                    file.write(new.text.encode("utf-8"))
+        return warnings
 
     def explain(self, executed: Executed, start: Array, tick: int) -> TickExplanation | None:
         """Explanation of a tick, None where it is no row of this block; `start` (n,) the row before it."""
@@ -185,7 +242,8 @@ class Execution:
         return self._pacer.warnings
 
     def _locate(self, origin: Origin) -> Place:
-        return Place.in_text(self.job.program.source, Span(origin.start, origin.end))
+        text = self._texts.get(origin.file, self.job.program.source)
+        return Place.in_text(text, Span(origin.start, origin.end))
 
 
 def kinematics_of(cell: Cell) -> Kinematics:
@@ -246,22 +304,31 @@ def run(
     progress: Progress | None = None,
     explain_tick: int | None = None,
     max_slow: float | None = None,
+    max_steps: int | None = None,
+    inputs: InputsGiven = None,
+    write_data: bool = False,
 ) -> Run:
     """Interpret a program, move its robot, and return the joint stream.
 
     `cell`: path of the cell file, by default found beside the program; `tick_ms` overrides the
     cell's tick; `explain_tick` asks for `Run.explanation` of that tick; a move that limits make
-    more than `max_slow` times as long as programmed is an error. Raises ProgramError and
-    CellError before anything moves, RunError (with what was executed until then) once it does,
-    RunInterrupted on Ctrl-C.
+    more than `max_slow` times as long as programmed is an error, and so are more than `max_steps`
+    statements (by default 10,000,000); `inputs` as `InputsGiven`, in place of the cell's. With `write_data`,
+    values of data lists that the program has changed are written to their files after a complete run.
+    Raises ProgramError and CellError before anything moves, RunError (with what was executed until then)
+    once it does, RunInterrupted on Ctrl-C.
     """
-    job = prepare(program, cell, tick_ms, max_slow)
-    return execute(job, progress, explain_tick)
-
-
-def execute(job: Job, progress: Progress | None = None, explain_tick: int | None = None) -> Run:
-    """Run a prepared job; see `run`."""
+    job = prepare(program, cell, tick_ms, max_slow, max_steps, inputs)
     execution = Execution(job)
+    finished = execute(execution, progress, explain_tick)
+    if not write_data:
+        return finished
+    return replace(finished, diagnostics=(*finished.diagnostics, *execution.write_data()))
+
+
+def execute(execution: Execution, progress: Progress | None = None, explain_tick: int | None = None) -> Run:
+    """Run a prepared job to its end; see `run`."""
+    job = execution.job
     recording = execution.recording()
     explanation: TickExplanation | None = None
     try:
@@ -291,13 +358,15 @@ def stream(
     cell: PathLike | None = None,
     tick_ms: float | None = None,
     max_slow: float | None = None,
+    max_steps: int | None = None,
+    inputs: InputsGiven = None,
 ) -> Iterator[Sample]:
     """Samples of a run, one after another, motion by motion as they are asked for.
 
     The same samples as `run` gives. Iteration may stop at any sample. What cannot be prepared raises
     here, what goes wrong in motion at the sample it keeps from coming, as IrlxError.
     """
-    return _samples(prepare(program, cell, tick_ms, max_slow))
+    return _samples(prepare(program, cell, tick_ms, max_slow, max_steps, inputs))
 
 
 def _samples(job: Job) -> Iterator[Sample]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from irlx.cell.find import find_cell, is_file
@@ -15,6 +15,7 @@ from irlx.diagnostics.near_files import near_files
 from irlx.language import tree
 from irlx.language.analysis import Analysis, analyse
 from irlx.language.data_lists import ImportedList
+from irlx.language.modules import ImportedModule, ModuleProblem
 from irlx.language.source import decode_source
 from irlx.language.tree.nodes import Name
 
@@ -32,12 +33,28 @@ class DataListFile(ImportedList):
     path: Path
     sha256: str
 
+    def is_as_read(self) -> bool:
+        """Whether the file still holds the very bytes that were read."""
+        try:
+            return hashlib.sha256(self.path.read_bytes()).hexdigest() == self.sha256
+        except OSError:
+            return False
+
+
+@dataclass(frozen=True)
+class ModuleFile(ImportedModule):
+    """A module that a program needs: its file, text, tree, and the SHA-256 of the file's bytes."""
+
+    path: Path = Path()
+    sha256: str = ""
+
 
 @dataclass(frozen=True)
 class Program:
-    """A program without errors: its file, text, tree, the warnings of its analysis, and its data lists.
+    """A program without errors: its file, text, tree, the warnings of its analysis, its data lists, modules.
 
-    `sha256` is that of the file's bytes; with data lists it covers them as well, see `digest_of_all`.
+    `data_lists` are those of the program itself, `modules` all that it needs, each behind those that it
+    imports. `sha256` is that of the file's bytes; it covers lists and modules as well, see `digest_of_all`.
     """
 
     path: Path
@@ -46,11 +63,19 @@ class Program:
     diagnostics: tuple[Diagnostic, ...]
     sha256: str
     data_lists: tuple[DataListFile, ...] = ()
+    modules: tuple[ModuleFile, ...] = ()
 
     @property
     def name(self) -> str:
         """Name after PROGRAM, as spelt."""
         return self.tree.name.name
+
+    @property
+    def all_lists(self) -> tuple[DataListFile, ...]:
+        """Data lists of the program and its modules, each file once."""
+        of_modules = (found for module in self.modules for found in module.data_lists)
+        lists = (found for found in (*self.data_lists, *of_modules) if isinstance(found, DataListFile))
+        return tuple({found.path: found for found in lists}.values())
 
     @property
     def specification(self) -> Name | None:
@@ -65,31 +90,39 @@ def load(path: PathLike, cell: PathLike | None = None) -> Program:
     wrong with the cell is not told here.
     """
     file = Path(path)
-    content, files = read_file(file), _ListFiles(file)
+    content, files = read_file(file), _Beside(file)
     analysis = _analysis(file, content, cell, files)
     if analysis.has_errors or not isinstance(analysis.tree, tree.Program):
         raise ProgramError(_why_no_program(analysis))
-    lists = tuple(files.file_of(found) for found in analysis.data_lists)
-    digest = digest_of_all(hashlib.sha256(content).hexdigest(), lists)
-    return Program(file, analysis.source, analysis.tree, analysis.diagnostics, digest, lists)
+    lists = tuple(files.lists.file_of(found) for found in analysis.data_lists)
+    modules = tuple(files.modules)
+    digest = digest_of_all(hashlib.sha256(content).hexdigest(), lists, modules)
+    return Program(file, analysis.source, analysis.tree, analysis.diagnostics, digest, lists, modules)
 
 
-def digest_of_all(program: str, lists: Sequence[DataListFile]) -> str:
-    """SHA-256 of a program and its data lists, in order, from that of the program's file.
+def digest_of_all(program: str, lists: Sequence[DataListFile], modules: Sequence[ModuleFile] = ()) -> str:
+    """SHA-256 of a program, its data lists in order, and its modules, each with its own data lists.
 
-    Without lists it is that of the file; else that of the text with one digest a line, each line with its
-    end: what ``sha256sum p.irl points.dat | cut -c-64 | sha256sum`` prints.
+    Without lists and modules it is that of the program's file; else that of the text with one digest a line,
+    each line with its end: what ``sha256sum p.irl points.dat tools.irl | cut -c-64 | sha256sum`` prints.
     """
-    if not lists:
+    digests = [program, *(found.sha256 for found in lists)]
+    for module in modules:
+        of_lists = (found.sha256 for found in module.data_lists if isinstance(found, DataListFile))
+        digests += [module.sha256, *of_lists]
+    if len(digests) == 1:
         return program
-    lines = "".join(f"{digest}\n" for digest in (program, *(found.sha256 for found in lists)))
+    lines = "".join(f"{digest}\n" for digest in digests)
     return hashlib.sha256(lines.encode("ascii")).hexdigest()
 
 
-def analyse_file(path: PathLike, cell: PathLike | None = None) -> Analysis:
-    """Analysis of a program, module or data list file. Raises ProgramError where the file cannot be read."""
+def analyse_file(path: PathLike, cell: PathLike | None = None, joints: tuple[str, ...] = ()) -> Analysis:
+    """Analysis of a program, module or data list file, with lints; `joints` are those of its robot, if known.
+
+    Raises ProgramError where the file cannot be read.
+    """
     file = Path(path)
-    return _analysis(file, read_file(file), cell, _ListFiles(file))
+    return _analysis(file, read_file(file), cell, _Beside(file), joints, lints=True)
 
 
 def cell_path(program: Program, given: PathLike | None) -> Path:
@@ -107,7 +140,7 @@ def _candidates(path: Path, specification: Name | None) -> list[Path]:
     return [*named, path.with_suffix(".toml")]
 
 
-def _specification(root: tree.Program) -> Name | None:
+def _specification(root: tree.Program | tree.Module) -> Name | None:
     for part in root.declarations:
         if isinstance(part, tree.SystemSpecification):
             return part.name
@@ -139,19 +172,84 @@ class _ListFiles:
         return DataListFile(found.source, found.tree, *self._read[found.source.name])
 
 
-def _analysis(path: Path, content: bytes, cell: PathLike | None, files: _ListFiles) -> Analysis:
+class _Beside:
+    """Reads the data lists and modules beside a program, each file once.
+
+    `modules` are those that could be analysed, each behind those that it imports; `findings` those on them.
+    """
+
+    def __init__(self, program: Path) -> None:
+        self.lists = _ListFiles(program)
+        self.modules: list[ModuleFile] = []
+        self.findings: list[Diagnostic] = []
+        self.names: tuple[str, ...] = ()
+        self._open = [program]
+        self._done: dict[Path, Analysis] = {}
+
+    def __call__(self, name: str) -> Analysis | None:
+        """Analysis of the module of a name, None without a file. Raises ModuleProblem: IRL260, IRL261."""
+        path = self._open[0].with_name(f"{name}.irl")
+        if path in self._open:
+            circle = " imports ".join(file.name for file in [*self._open[self._open.index(path) :], path])
+            raise ModuleProblem("IRL260", module=name, files=circle)
+        if path not in self._done:
+            try:
+                content = path.read_bytes()
+            except FileNotFoundError:
+                return None
+            except (OSError, ValueError) as cause:
+                words = "it is a folder" if isinstance(cause, IsADirectoryError) else _words(cause)
+                raise ModuleProblem("IRL261", module=name, path=path, cause=words) from None
+            self._open.append(path)
+            try:
+                self._done[path] = self._analysed(name, path, content)
+            finally:
+                self._open.pop()
+        return self._done[path]
+
+    def _analysed(self, name: str, path: Path, content: bytes) -> Analysis:
+        try:
+            source = decode_source(str(path), content)
+        except IrlxError as error:
+            raise ModuleProblem("IRL261", module=name, path=path, cause=error.reason.message) from None
+        analysis = analyse(source, self, lambda _: self.names, self.lists)
+        self.findings += analysis.diagnostics
+        if isinstance(analysis.tree, tree.Module):
+            lists = tuple(self.lists.file_of(found) for found in analysis.data_lists)
+            digest = hashlib.sha256(content).hexdigest()
+            module = ModuleFile(name.casefold(), source, analysis.tree, lists, path, digest)
+            self.modules.append(module)
+        return analysis
+
+
+def _analysis(
+    path: Path,
+    content: bytes,
+    cell: PathLike | None,
+    files: _Beside,
+    joints: tuple[str, ...] = (),
+    *,
+    lints: bool = False,
+) -> Analysis:
     """Analysis of the bytes of a file. Raises ProgramError for bytes that are no text."""
 
-    def cell_names(root: tree.Program) -> tuple[str, ...]:
+    def cell_names(root: tree.Program | tree.Module) -> tuple[str, ...]:
+        files.names = found_names(root)
+        return files.names
+
+    def found_names(root: tree.Program | tree.Module) -> tuple[str, ...]:
         if cell is not None:
             return frame_names(Path(cell))
         found = (candidate for candidate in _candidates(path, _specification(root)) if is_file(candidate))
         return next((frame_names(candidate) for candidate in found), ())
 
     try:
-        return analyse(decode_source(str(path), content), cell_names=cell_names, data_lists=files)
+        text = decode_source(str(path), content)
+        analysis = analyse(text, files, cell_names, files.lists, joints=joints, lints=lints)
     except IrlxError as error:
         raise ProgramError(error.diagnostics) from error
+    found = (*analysis.diagnostics, *files.findings)
+    return replace(analysis, diagnostics=found, modules=tuple(files.modules))
 
 
 def _why_no_program(analysis: Analysis) -> tuple[Diagnostic, ...]:

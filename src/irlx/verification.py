@@ -9,7 +9,18 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from irlx.blocks import AskPosture, AskPostureOf, Block
+from irlx.blocks import (
+    AskInput,
+    AskInputChange,
+    AskManipulability,
+    AskNearestPosture,
+    AskPose,
+    AskPosture,
+    AskPostureOf,
+    Block,
+    InputBlock,
+    WaitBlock,
+)
 from irlx.cell.cell import Cell
 from irlx.cell.find import is_file
 from irlx.cell.load import load_cell
@@ -17,7 +28,7 @@ from irlx.cell.named import robot_names
 from irlx.cell.schema import RobotSection
 from irlx.cell.setting import setting_of
 from irlx.diagnostics import IrlxError
-from irlx.interpreter.interpret import interpret
+from irlx.interpreter.interpret import MAX_STEPS, interpret
 from irlx.program import Program, cell_path, load
 from irlx.robot.description import RobotDescription
 from irlx.streams.error import StreamError
@@ -37,13 +48,17 @@ PathLike = str | os.PathLike[str]
 
 
 def verify(
-    run_or_file: Run | PathLike, program: PathLike | None = None, cell: PathLike | None = None
+    run_or_file: Run | PathLike,
+    program: PathLike | None = None,
+    cell: PathLike | None = None,
+    max_steps: int | None = None,
 ) -> Report:
     """Check a run, or a stream file, independently of what made it.
 
     The robot is that of `cell`; without one it is looked up: the cell of `program`, the cell file of the
     recorded name beside the stream or in the working folder, then the robot of the recorded name. With
-    `program` the stream must come from that very text, and its blocks must be those that the text gives.
+    `program` the stream must come from that very text, and its blocks must be those that the text gives;
+    `max_steps` is for programs that were run with it.
     A damaged file fails the check 'file'. Raises StreamError where there is no file to
     read, CellError for a `cell` that cannot be used, ProgramError for a program that cannot.
     """
@@ -68,7 +83,11 @@ def verify(
         reference = Reference(strict.robot, strict.limits, strict.start, strict.relations)
     elif header is not None:
         reference = _looked_up(header, beside, of_program)
-    compare = None if text is None else partial(_program_check, text, of_program, may_lack_blocks)
+    compare = (
+        None
+        if text is None
+        else partial(_program_check, text, of_program, may_lack_blocks, max_steps or MAX_STEPS)
+    )
     return verify_scans(scans, reference, name, compare, from_file, may_lack_blocks)
 
 
@@ -129,27 +148,46 @@ def _same_limits(header: StreamHeader, cell: Cell) -> bool:
     return all((a == b).all() for own, other in pairs for a, b in zip(own, other, strict=True))
 
 
-def _program_check(program: Program, cell: Cell | None, may_lack_blocks: bool, outline: Outline) -> Check:
+def _program_check(
+    program: Program, cell: Cell | None, may_lack_blocks: bool, max_steps: int, outline: Outline
+) -> Check:
     """The stream comes from this very text, and its blocks are those that the text gives in this cell."""
     header = outline.header
     findings, unsaid = [], ""
     if program.sha256 != header.program_sha256:
         lists = ", ".join(found.path.name for found in program.data_lists)
+        modules = ", ".join(found.path.name for found in program.modules)
         other = f"another text, or other values in {lists}" if lists else "another text"
+        other += f", or another text of {modules}" if modules else ""
         findings.append(f"the stream was made from {header.program_name} with {other}")
     if may_lack_blocks and not outline.records:
         unsaid = "its text only: the stream carries no blocks"
     elif cell is None:
         unsaid = "its text only: no cell to run it in is found"
     else:
-        words = blocks_differ(outline, _replayed(program, cell, outline))
+        words = blocks_differ(outline, _replayed(program, cell, outline, max_steps))
         findings += [words] if words else []
     return Check("program", FAILED if findings else OK, detail="; ".join(findings) or unsaid)
 
 
-def _replayed(program: Program, cell: Cell, outline: Outline) -> Iterator[Block]:
+def _recorded(question: AskInput | AskInputChange, outline: Outline, done: int) -> tuple[float, ...]:
+    """What the stream says of inputs, `done` of its blocks being behind: what was read, how long was waited.
+
+    Raises Unanswerable where the next block is neither.
+    """
+    block = outline.records[done].block if done < len(outline.records) else None
+    if isinstance(question, AskInput) and isinstance(block, InputBlock):
+        return (block.value,)
+    if isinstance(question, AskInputChange) and isinstance(block, WaitBlock):
+        return (block.duration,)
+    raise Unanswerable
+
+
+def _replayed(program: Program, cell: Cell, outline: Outline, max_steps: int) -> Iterator[Block]:
     """Blocks of a program whose questions are answered by the stream: nothing moves."""
-    source = interpret(program.tree, program.source, setting_of(cell), program.data_lists)
+    source = interpret(
+        program.tree, program.source, setting_of(cell), program.data_lists, program.modules, max_steps
+    )
     reply: tuple[float, ...] | None = None
     done = 0
     while True:
@@ -158,13 +196,26 @@ def _replayed(program: Program, cell: Cell, outline: Outline) -> Iterator[Block]
         except StopIteration:
             return
         reply = None
-        if isinstance(item, AskPostureOf):
+        if isinstance(item, AskPostureOf | AskNearestPosture):
             # Which posture a pose has is for the machine to say, and no stream tells.
             raise Unanswerable
         if isinstance(item, AskPosture):
             records = outline.records
             row = records[done].tick if done < len(records) else outline.rows - 1
             reply = outline.posture(row)
+        elif isinstance(item, AskPose | AskManipulability):
+            reply = _of_posture(item, cell)
+        elif isinstance(item, AskInput | AskInputChange):
+            reply = _recorded(item, outline, done)
         else:
             done += 1
             yield item
+
+
+def _of_posture(question: AskPose | AskManipulability, cell: Cell) -> tuple[float, ...]:
+    """What the robot's model says of a posture."""
+    # Imported here: few programs ask, and the model loads a library that verification does without.
+    from irlx.pacing.answers import answer_of_posture
+    from irlx.robot.kinematics import Kinematics
+
+    return answer_of_posture(question, Kinematics(cell.robot))

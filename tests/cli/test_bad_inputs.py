@@ -134,7 +134,7 @@ RUNS = [
     ),
     ("", "FREEZESTART 12;", "IRL346: FREEZESTART names joint 12; the robot has joints 1 to 11"),
     ("", "MOVE LIN POSITION(11400, 1000, 1 / 0);", "IRL502: division by zero"),
-    ("", "PAUSE;", "IRL590: this version of irlx reads PAUSE but does not execute it yet"),
+    ("", "OBSTACLE wall;", "IRL590: this version of irlx reads OBSTACLE but does not execute it yet"),
 ]
 
 

@@ -16,7 +16,7 @@ from irlx.diagnostics.codes.types import TYPES
 
 PAGES = Path(__file__).parents[2] / "docs" / "diagnostics"
 CODES = [code.id for group in (COMMAND, TYPES, DATA_LISTS, PACING, RUN, CELL) for code in group]
-IN_WORDS = {"IRL090", "IRL229", "IRL241", "IRL523", "IRL525", "IRL614"}
+IN_WORDS = {"IRL090", "IRL229", "IRL241", "IRL264", "IRL265", "IRL513", "IRL523", "IRL525", "IRL614"}
 """Codes that no small program for the packaged robot brings about: their pages say so in words."""
 
 PLAIN_PROGRAM = "PROGRAM demo;\nBEGIN\n  MOVE LIN POSITION(11400, 1000, 3500);\nENDPROGRAM\n"

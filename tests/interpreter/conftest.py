@@ -4,11 +4,13 @@ import pytest
 
 from irlx.blocks import Question
 from irlx.blocks.text import block_text
-from irlx.interpreter.declare import declared_scope
+from irlx.interpreter.context import Context
 from irlx.interpreter.errors import InterpreterError
-from irlx.interpreter.evaluate import Evaluator
-from irlx.interpreter.interpret import interpret
+from irlx.interpreter.expressions import Expressions
+from irlx.interpreter.interpret import Interpretation, declared_scope, interpret
+from irlx.interpreter.machine import Machine
 from irlx.interpreter.setting import Setting
+from irlx.interpreter.world import World
 from irlx.language.analysis import analyse
 from irlx.language.source import source_text
 
@@ -44,7 +46,9 @@ def value(setting):
         scope = declared_scope(analysis.tree, analysis.source, setting())
         (statement,) = analysis.tree.body
         wanted = scope.types[expected] if expected else None
-        return Evaluator(analysis.source, scope).value(statement.value, wanted)
+        world = World(setting(), Machine())
+        context = Context(analysis.source, scope, setting(), world.machine, rest=world.rest)
+        return Expressions(context).value(statement.value, wanted).run([])
 
     return evaluate
 
@@ -82,6 +86,26 @@ def _driven(source, posture):
         answer = posture if isinstance(item, Question) else None
         if answer is None:
             yield item
+
+
+@pytest.fixture
+def final(setting):
+    """What a program leaves in its variables: name -> value, structures opened into tuples."""
+
+    def run(declarations, body, posture=None, joints=7, **more):
+        text = f"PROGRAM t;\n{declarations}\nBEGIN\n{body}\nENDPROGRAM"
+        analysis = analyse(source_text("t.irl", text))
+        assert not [d for d in analysis.diagnostics if d.is_error], analysis.diagnostics
+        ready = Interpretation(analysis.tree, analysis.source, setting(joints), **more)
+        list(_driven(ready.run(), posture or (0.0,) * joints))
+        return {name: opened(variable.value) for name, variable in ready.scope.variables.items()}
+
+    return run
+
+
+def opened(value):
+    """A value with records and arrays opened into tuples."""
+    return tuple(map(opened, value.values)) if hasattr(value, "values") else value
 
 
 @pytest.fixture

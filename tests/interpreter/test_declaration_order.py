@@ -33,6 +33,6 @@ def test_a_constant_may_give_the_bounds_of_an_array_type(tmp_path) -> None:
 @pytest.mark.req("LANG-22")
 @pytest.mark.parametrize("name", ["POSE", "JOINT", "REAL"])
 def test_a_predefined_type_that_means_one_thing_is_not_defined_again(tmp_path, name: str) -> None:
-    with pytest.raises(irlx.RunError) as caught:
+    with pytest.raises(irlx.IrlxError) as caught:
         run(tmp_path, f"TYPE RECORD REAL: a; ENDRECORD = {name};", "")
     assert caught.value.reason.code == "IRL202"

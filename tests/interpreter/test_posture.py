@@ -192,12 +192,16 @@ def test_an_obstacle_is_read_only(run_error):
 
 
 @pytest.mark.req("LANG-34")
-def test_before_the_first_statement_there_is_no_machine_to_ask(run_error):
-    what = "the function POSTURE in a declaration"
-    message = f"this version of irlx reads {what} but does not execute it yet"
-    declarations = "VAR MAIN_JOINT: j := POSTURE(POSITION(1, 2, 3));"
+def test_an_initial_value_asks_before_the_first_statement(machine):
+    _, ran = machine("MOVE PTP j;", "VAR MAIN_JOINT: j := POSTURE(POSITION(1, 2, 3));")
+    assert (len(ran.asked), ran.blocks[0].target.values[0]) == (1, pytest.approx(0.001))
+
+
+@pytest.mark.req("LANG-34")
+def test_constants_come_before_there_is_a_machine_to_ask(run_error):
+    message = "this version of irlx reads the function POSTURE in a constant but does not execute it yet"
+    declarations = "CONST MAIN_JOINT: j := POSTURE(POSITION(1, 2, 3));"
     assert run_error(declarations, "") == ("IRL590", message, "POSTURE")
-    assert warned(declarations, "") == [("IRL591", what, "POSTURE(POSITION(1, 2, 3))")]
 
 
 @pytest.mark.req("LANG-34")

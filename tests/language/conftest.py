@@ -49,3 +49,17 @@ def declarations_of(analysed):
         return analysis.tree.declarations
 
     return run
+
+
+@pytest.fixture
+def told_of():
+    """Code, message and marked text of every finding on a text; `lints` adds those that are no mistakes."""
+
+    def run(text, *, lints=False, **more):
+        found = analyse(source_text("t.irl", text), lints=lints, **more).diagnostics
+        return [
+            (d.code, d.message, d.place.text.text[d.place.span.start : d.place.span.end].strip())
+            for d in found
+        ]
+
+    return run

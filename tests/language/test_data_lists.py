@@ -275,7 +275,8 @@ def test_values_that_are_not_constant(values):
 
 def test_values_that_are():
     values = """INT: n := 2; ARRAY [1..n] OF INT: a := (n, n + 1); grip: g := (1);
-    POSE: pose := POSE(POSITION(1, 2, 3), ORIZYX(0, 180, 0)), b := INV(pose) @ pose + (a[1], 0, -SQRT(2.));
+    POSE: pose := POSE(POSITION(1, 2, 3), ORIZYX(0, 180, 0));
+    POSE: b := INV(pose) @ pose + POSITION(a[1], 0, -SQRT(2.));
     RECORD REAL: u, v; ENDRECORD: r := (1, 2); REAL: part := r.u; BOOL: ok := NOT (n > 1 AND TRUE);"""
     found = analyse(
         source_text("t.irl", program("", DECLARATIONS)),

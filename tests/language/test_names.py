@@ -126,7 +126,8 @@ def test_a_switch_left_on_names_both_places(analysed):
 
 @pytest.mark.req("LANG-51")
 def test_every_parameter_of_move_is_known():
-    given = " ".join(f"{word} := 1" for word in MOVE_PARAMETERS)
+    values = {"profile": "'S_CURVE'", "circ_ori": "'VIA'", "c_pass": "TRUE"}
+    given = " ".join(f"{word} := {values.get(word, '1')}" for word in MOVE_PARAMETERS)
     assert "speed_ori" in given
     assert "circ_ori" in given
     assert codes(f"PROGRAM t; VAR POSE: p, q; BEGIN MOVE CIRCLE p, q {given}; ENDPROGRAM") == []

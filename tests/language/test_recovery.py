@@ -10,7 +10,7 @@ def told(analysis):
 
 
 def in_body(text):
-    names = "VAR REAL: x, y, z; POSE: p, q; ARRAY [1..9] OF REAL: r; BOOL: a, b;"
+    names = "VAR REAL: x, y, z; POSE: p, q; ARRAY [1..9] OF REAL: r; BOOL: a, b; MAIN_JOINT: j;"
     return f"PROGRAM t; {names}\nBEGIN\n{text}\nENDPROGRAM\n"
 
 
@@ -109,7 +109,7 @@ CASES = {
     "x := 'abc;\ny := 2;": ["3:6 IRL111 text without closing '"],
     "x := 5 § 3;\ny := 2;": ["3:8 IRL112 '§' (U+00A7) has no meaning outside texts and comments"],
     "x := 1E999;": ["3:6 IRL113 number outside the range of REAL"],
-    "MOVE LIN p WITH RECONFIGURATION q SPEED := 5;": [
+    "MOVE LIN p WITH RECONFIGURATION j SPEED := 5;": [
         "3:35 IRL114 'SPEED' stands after WITH or out of order in the MOVE"
     ],
 }

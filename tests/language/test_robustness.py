@@ -61,7 +61,8 @@ def mutated(chance, text):
 
 
 def check(text):
-    analysis = analyse(source_text("t.irl", text), data_lists=lambda *_: source_text("t.dat", text))
+    points = source_text("t.dat", text)
+    analysis = analyse(source_text("t.irl", text), data_lists=lambda *_: points, lints=True)
     length = len(analysis.source.text)
     for finding in analysis.diagnostics:
         assert finding.place.span.end <= length

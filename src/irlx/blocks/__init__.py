@@ -5,7 +5,7 @@ receiving the answers. All of them are frozen, serialisable, in SI units (m, rad
 numbered from 1 in the robot's order.
 """
 
-from irlx.blocks.block import Block, HaltBlock, Origin
+from irlx.blocks.block import Block, HaltBlock, Origin, PauseBlock
 from irlx.blocks.criterion import CriterionBlock, CriterionChoice, CriterionClause, CriterionParam
 from irlx.blocks.move import ArcCourse, JointTarget, MotionLaw, MoveBlock, MoveKind, PoseTarget
 from irlx.blocks.options import (
@@ -16,11 +16,26 @@ from irlx.blocks.options import (
     LimitKind,
     LimitSwitchBlock,
 )
-from irlx.blocks.questions import AskPosture, AskPostureOf, Question
+from irlx.blocks.questions import (
+    AskInput,
+    AskInputChange,
+    AskManipulability,
+    AskNearestPosture,
+    AskPose,
+    AskPosture,
+    AskPostureOf,
+    Question,
+)
 from irlx.blocks.reconfigure import ReconfigureBlock
+from irlx.blocks.signal import InputBlock, Port, SignalBlock, SignalKind, WaitBlock
 
 __all__ = [
     "ArcCourse",
+    "AskInput",
+    "AskInputChange",
+    "AskManipulability",
+    "AskNearestPosture",
+    "AskPose",
     "AskPosture",
     "AskPostureOf",
     "Block",
@@ -31,6 +46,7 @@ __all__ = [
     "CyclicBlock",
     "FreezeBlock",
     "HaltBlock",
+    "InputBlock",
     "JointRange",
     "JointTarget",
     "LimitClause",
@@ -40,7 +56,12 @@ __all__ = [
     "MoveBlock",
     "MoveKind",
     "Origin",
+    "PauseBlock",
+    "Port",
     "PoseTarget",
     "Question",
     "ReconfigureBlock",
+    "SignalBlock",
+    "SignalKind",
+    "WaitBlock",
 ]

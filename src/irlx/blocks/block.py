@@ -1,4 +1,4 @@
-"""What every function block carries, and the block that ends a program early."""
+"""What every function block carries, and the blocks that end a program early or hold it up."""
 
 from __future__ import annotations
 
@@ -31,3 +31,8 @@ class Block:
 @dataclass(frozen=True, kw_only=True)
 class HaltBlock(Block):
     """The program ends here although statements follow."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class PauseBlock(Block):
+    """The robot stands, and waits to be continued where somebody is there to do it."""

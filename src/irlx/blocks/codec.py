@@ -14,11 +14,12 @@ from functools import cache
 from math import isfinite
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
-from irlx.blocks.block import Block, HaltBlock
+from irlx.blocks.block import Block, HaltBlock, PauseBlock
 from irlx.blocks.criterion import CriterionBlock
 from irlx.blocks.move import MoveBlock
 from irlx.blocks.options import CyclicBlock, FreezeBlock, LimitSwitchBlock
 from irlx.blocks.reconfigure import ReconfigureBlock
+from irlx.blocks.signal import InputBlock, SignalBlock, WaitBlock
 
 BLOCK_TYPES: dict[str, type[Block]] = {
     kind.__name__: kind
@@ -26,10 +27,14 @@ BLOCK_TYPES: dict[str, type[Block]] = {
         MoveBlock,
         ReconfigureBlock,
         HaltBlock,
+        PauseBlock,
         LimitSwitchBlock,
         FreezeBlock,
         CyclicBlock,
         CriterionBlock,
+        SignalBlock,
+        InputBlock,
+        WaitBlock,
     )
 }
 """Every block there is, by the name that its plain form carries."""

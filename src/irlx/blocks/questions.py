@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from irlx.blocks.block import Origin
+from irlx.blocks.signal import Port
 
 
 @dataclass(frozen=True)
@@ -30,4 +31,62 @@ class AskPostureOf:
     orientation: tuple[float, float, float, float] | None
 
 
-Question = AskPosture | AskPostureOf
+@dataclass(frozen=True)
+class AskNearestPosture:
+    """Which posture of this pose, within limits and frozen joints in force, is nearest to `near` (rad, m)?
+
+    Pose and answer as in AskPostureOf.
+    """
+
+    origin: Origin
+    position: tuple[float, float, float]
+    orientation: tuple[float, float, float, float] | None
+    near: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class AskPose:
+    """Which pose has the tool in this posture (rad, m)?
+
+    Answer: position, m, and unit quaternion x, y, z, w: seven numbers.
+    """
+
+    origin: Origin
+    posture: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class AskManipulability:
+    """How freely can the tool move in this posture (rad, m)? Answer: one number, as MANIPULABILITY has it."""
+
+    origin: Origin
+    posture: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class AskInput:
+    """What does this input say, all blocks so far executed? Answer: one number, 0 or 1 for a BOOL.
+
+    `names` are what its values may go by, the first that is known counts: the port and what the program
+    calls it.
+    """
+
+    origin: Origin
+    port: Port
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class AskInputChange:
+    """How long until one of these inputs may say something else, all blocks so far executed?
+
+    Answer: one number, s, or none at all where none of them ever changes.
+    """
+
+    origin: Origin
+    inputs: tuple[tuple[str, ...], ...]
+
+
+Question = (
+    AskPosture | AskPostureOf | AskNearestPosture | AskPose | AskManipulability | AskInput | AskInputChange
+)

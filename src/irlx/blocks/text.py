@@ -6,11 +6,12 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import singledispatch
 from math import degrees
 
-from irlx.blocks.block import Block, HaltBlock
+from irlx.blocks.block import Block, HaltBlock, PauseBlock
 from irlx.blocks.criterion import CriterionBlock, CriterionChoice
 from irlx.blocks.move import JointTarget, MotionLaw, MoveBlock, MoveKind, PoseTarget
 from irlx.blocks.options import CyclicBlock, FreezeBlock, JointRange, LimitKind, LimitSwitchBlock
 from irlx.blocks.reconfigure import ReconfigureBlock
+from irlx.blocks.signal import InputBlock, Port, SignalBlock, SignalKind, WaitBlock
 
 NEGLIGIBLE = 1e-12
 """Numbers smaller than this print as 0: they are what sin(180 degrees) leaves behind."""
@@ -47,6 +48,32 @@ def _words(block: Block, joint_units: Sequence[str]) -> str:
 @_words.register
 def _(block: HaltBlock, joint_units: Sequence[str]) -> str:
     return "HALT"
+
+
+@_words.register
+def _(block: PauseBlock, joint_units: Sequence[str]) -> str:
+    return "PAUSE"
+
+
+@_words.register
+def _(block: SignalBlock, joint_units: Sequence[str]) -> str:
+    return f"SET {block.port.name} to {_signal(block.port, block.value)}"
+
+
+@_words.register
+def _(block: InputBlock, joint_units: Sequence[str]) -> str:
+    return f"READ {block.port.name}: {_signal(block.port, block.value)}"
+
+
+@_words.register
+def _(block: WaitBlock, joint_units: Sequence[str]) -> str:
+    return f"WAIT {number(block.duration)} s{f' for {block.condition}' if block.condition else ''}"
+
+
+def _signal(port: Port, value: float) -> str:
+    if port.kind is SignalKind.BOOL:
+        return "TRUE" if value else "FALSE"
+    return str(int(value)) if port.kind is SignalKind.INT else number(value)
 
 
 @_words.register

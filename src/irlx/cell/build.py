@@ -57,6 +57,7 @@ def build_cell(content: CellFile, robot_section: RobotSection, robot: RobotDescr
         {name: _frame(section) for name, section in content.frames.items()},
         _warnings(content, limits, file),
         *constraints,
+        {name.casefold(): trace for name, trace in content.signals.inputs.items()},
     )
 
 
@@ -200,8 +201,6 @@ def _warnings(content: CellFile, limits: JointLimits, file: str) -> tuple[Diagno
     found = []
     if content.obstacle:
         found.append(report("IRL607", Place(file, key="obstacle"), section="obstacle"))
-    if content.signals:
-        found.append(report("IRL607", Place(file, key="signals"), section="signals"))
     if not np.any(np.isfinite(limits.acceleration_upper)):
         found.append(report("IRL621", Place(file, key="robot.limits.acceleration")))
     return tuple(found)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,7 +50,8 @@ class Cell:
     """Robot, limits (SI), least-motion weights (n,), start posture (n,) rad | m, tick and frames.
 
     `file` names the cell file for messages, `model` is the robot as the cell gives it; `relations` (SI) and
-    `registered` constraints hold beside the tool pose.
+    `registered` constraints hold beside the tool pose. `inputs` are traces by casefolded name: times
+    in s, and the value that holds from each on, 0 or 1 for a BOOL.
     """
 
     file: str
@@ -65,3 +66,4 @@ class Cell:
     warnings: tuple[Diagnostic, ...] = ()
     relations: tuple[JointRelation, ...] = ()
     registered: tuple[RegisteredConstraint, ...] = ()
+    inputs: Mapping[str, tuple[tuple[float, float], ...]] = field(default_factory=dict)

@@ -17,6 +17,7 @@ from irlx.cell.schema import (
     LimitsSection,
     MotionSection,
     RobotSection,
+    SignalsSection,
 )
 from irlx.diagnostics import Diagnostic, Place, report
 from irlx.diagnostics.diagnostic import near_matches
@@ -34,6 +35,7 @@ _SECTIONS: dict[tuple[str, ...], type[BaseModel]] = {
     ("motion",): MotionSection,
     ("frames", "*"): FrameSection,
     ("constraint", "*"): ConstraintSection,
+    ("signals",): SignalsSection,
 }
 
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+from math import isfinite
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, PlainValidator
 from pydantic_core import PydanticCustomError
 
 from irlx.cell.limit_entry import Limits
@@ -23,6 +25,28 @@ def _frame_name(name: str) -> str:
     return name
 
 
+Trace = tuple[tuple[float, float], ...]
+
+
+def _trace(found: Any) -> Trace:
+    """Times and values of a scripted input; true and false count as 1 and 0."""
+    entries = found if isinstance(found, list) else [found]
+    if not all(_is_entry(entry) for entry in entries):
+        raise PydanticCustomError("trace", "a list of pairs [time in s, value], true or false or a number")
+    trace = tuple((float(at), float(value)) for at, value in entries)
+    if any(later[0] <= earlier[0] for earlier, later in pairwise(trace)):
+        raise PydanticCustomError("rising_times", "times that rise")
+    return trace
+
+
+def _is_entry(entry: Any) -> bool:
+    if not (isinstance(entry, list) and len(entry) == 2 and not isinstance(entry[0], bool)):
+        return False
+    numbers = all(isinstance(part, int | float) and isfinite(part) for part in entry)
+    return numbers and entry[0] >= 0.0
+
+
+InputTrace = Annotated[Any, PlainValidator(_trace)]
 FrameName = Annotated[str, AfterValidator(_frame_name)]
 
 
@@ -75,6 +99,12 @@ class FrameSection(Section):
     rpy: Vector = Field(default_factory=lambda: [0.0, 0.0, 0.0])
 
 
+class SignalsSection(Section):
+    """Scripted inputs: by the name of a port or of the program, pairs of a time in s and a value."""
+
+    inputs: dict[str, InputTrace] = Field(default_factory=dict)
+
+
 class ConstraintSection(Section):
     """A condition that holds beside the tool pose.
 
@@ -89,11 +119,11 @@ class ConstraintSection(Section):
 
 
 class CellFile(Section):
-    """A whole cell file. `obstacle` and `signals` are kept for later versions and not looked into."""
+    """A whole cell file. `obstacle` is kept for later versions and not looked into."""
 
     robot: RobotSection = Field(default_factory=RobotSection)
     motion: MotionSection = Field(default_factory=MotionSection)
     frames: dict[FrameName, FrameSection] = Field(default_factory=dict)
     constraint: list[ConstraintSection] = Field(default_factory=list)
     obstacle: list[dict[str, Any]] = Field(default_factory=list)
-    signals: dict[str, Any] = Field(default_factory=dict)
+    signals: SignalsSection = Field(default_factory=SignalsSection)

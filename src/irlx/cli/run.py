@@ -51,6 +51,15 @@ def add_parser(commands: Any) -> None:
         help="end with IRL525 where limits make a move more than F times as long as programmed",
     )
     parser.add_argument(
+        "--max-steps",
+        type=int,
+        metavar="N",
+        help="end with IRL510 after N statements (default: 10,000,000)",
+    )
+    parser.add_argument(
+        "--inputs", metavar="CSV", help="what inputs say: lines of time in s, input, value (else the cell's)"
+    )
+    parser.add_argument(
         "--explain-tick",
         type=int,
         metavar="N",
@@ -63,6 +72,11 @@ def add_parser(commands: Any) -> None:
         metavar="M",
         help="import a module or a .py file that registers criteria of your own; may be given several times",
     )
+    parser.add_argument(
+        "--write-data",
+        action="store_true",
+        help="after a complete run, write values of data lists that the program changed back to their files",
+    )
     parser.add_argument("--json", action="store_true", help="print the summary as JSON")
     parser.add_argument("--quiet", action="store_true", help="no progress, no summary")
     parser.add_argument("--no-verify", action="store_true", help="do not check the written files")
@@ -74,12 +88,13 @@ def command(options: argparse.Namespace) -> int:
     from irlx.cli.output import exit_code, print_diagnostics
 
     job, outputs = _prepared(options)
-    from irlx.pipeline import execute
+    from irlx.pipeline import Execution, execute
     from irlx.report.run import RunError, RunInterrupted
 
+    execution = Execution(job)
     try:
         with _progress(options) as progress:
-            run = execute(job, progress, options.explain_tick)
+            run = execute(execution, progress, options.explain_tick)
     except RunError as error:
         print_diagnostics(error.diagnostics)
         if not options.json:
@@ -97,6 +112,9 @@ def command(options: argparse.Namespace) -> int:
     reports = {} if options.no_verify else {str(path): _verified(path, job) for path in outputs}
     broken = [found for name, report in reports.items() for found in report.diagnostics(name)]
     print_diagnostics(broken)
+    if options.write_data and not broken:
+        # Behind the verification, which reads the lists as they were.
+        print_diagnostics(execution.write_data())
     _print_summary(run, outputs, reports, broken, options)
     return 1 if broken else 0
 
@@ -115,8 +133,11 @@ def _prepared(options: argparse.Namespace) -> tuple[Job, list[Path]]:
         program = load(options.program, options.cell)
         from irlx.pipeline import prepare
 
-        job = prepare(program, options.cell, options.tick, options.max_slow)
-        inputs = (program.path, Path(job.cell.file), *(found.path for found in program.data_lists))
+        asked = options.tick, options.max_slow, options.max_steps, options.inputs
+        job = prepare(program, options.cell, *asked)
+        read = [*(found.path for found in program.data_lists), *(found.path for found in program.modules)]
+        inputs = (program.path, Path(job.cell.file), *read)
+        inputs += () if options.inputs is None else (Path(options.inputs),)
         return job, output_paths(options.output, program.path, inputs)
     except IrlxError as error:
         if options.json:
@@ -202,7 +223,7 @@ def _plain_diagnostics(diagnostics: Iterable[Diagnostic]) -> list[dict[str, obje
 def _verified(path: Path, job: Job) -> Any:
     from irlx.verification import verify
 
-    return verify(path, job.program.path, job.cell.file)
+    return verify(path, job.program.path, job.cell.file, job.max_steps)
 
 
 def _print_summary(

@@ -24,6 +24,9 @@ def add_parser(commands: Any) -> None:
     parser.add_argument(
         "--program", metavar="P.irl", help="require that the stream's blocks are those of this program"
     )
+    parser.add_argument(
+        "--max-steps", type=int, metavar="N", help="with --program: as it was run with (default: 10,000,000)"
+    )
     parser.add_argument("--json", action="store_true", help="print the report as JSON")
     parser.set_defaults(command=command)
 
@@ -33,7 +36,7 @@ def command(options: argparse.Namespace) -> int:
     from irlx.cli.output import encodable
     from irlx.verification import verify
 
-    report = verify(options.stream, options.program, options.cell)
+    report = verify(options.stream, options.program, options.cell, options.max_steps)
     words = json.dumps(report.to_plain(), indent=2) if options.json else str(report)
     print(encodable(words, sys.stdout))
     return 0 if report.passed else 1

@@ -5,15 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite
+from typing import Any
 
 from irlx.diagnostics import SourceText, Span
+from irlx.interpreter.compiled import Compiled, constant, failing
 from irlx.interpreter.errors import fail
 from irlx.interpreter.quaternion import norm
-from irlx.interpreter.types import BOOL, INT, ORIENTATION, REAL, STRING, Array, Record, Type
-from irlx.interpreter.values import ArrayValue, RecordValue, Value, type_name
+from irlx.interpreter.types import CHAR, INT, ORIENTATION, REAL, STRING, Array, Record, Type
+from irlx.interpreter.values import ArrayValue, RecordValue, Value
 
 _UNIT_LENGTH = 1e-6
-_INT_LIMIT = 2**63
+INT_LIMIT = 2**63
+"""INT holds whole numbers from minus this to below this."""
 _INT_RANGE = "INT holds the whole numbers from -2^63 to 2^63 - 1"
 _REAL_RANGE = "REAL holds numbers up to 1.8E308"
 
@@ -26,22 +29,24 @@ class Where:
     span: Span
 
 
-def fit(value: Value, expected: Type, where: Where) -> Value:
-    """The value as one of the expected type: INT becomes REAL, records of like fields change their name.
+def fit(found: Compiled, expected: Type, where: Where) -> Compiled:
+    """The expression as one of the expected type; fails with IRL222 where the types differ.
 
-    Raises InterpreterError: IRL222 where the types differ.
+    INT becomes REAL, CHAR becomes STRING, and a literal text of one character CHAR.
     """
-    if expected is REAL and _is_number(value):
-        return float(value)  # type: ignore[arg-type]
-    if expected is INT and isinstance(value, int) and not isinstance(value, bool):
-        return value
-    if (expected is BOOL and isinstance(value, bool)) or (expected is STRING and isinstance(value, str)):
-        return value
-    if isinstance(expected, Record) and isinstance(value, RecordValue) and value.type == expected:
-        return value
-    if isinstance(expected, Array) and isinstance(value, ArrayValue) and value.type == expected:
-        return value
-    raise fail("IRL222", where.source, where.span, expected=expected.name, found=type_name(value))
+    if found.type is None or found.type == expected:
+        return found
+    run = found.run
+    if expected == REAL and found.type == INT:
+        if found.constant:
+            return constant(REAL, float(run([])))
+        return Compiled(REAL, lambda frame: float(run(frame)))
+    if expected == STRING and found.type == CHAR:
+        return Compiled(STRING, run, constant=found.constant)
+    if expected == CHAR and len(found.text or "") == 1:
+        return Compiled(CHAR, run, constant=True, text=found.text)
+    data = {"expected": expected.name, "found": found.type.name}
+    return failing(fail("IRL222", where.source, where.span, **data), (found,))
 
 
 def count(number: int, noun: str, nouns: str = "") -> str:
@@ -49,18 +54,14 @@ def count(number: int, noun: str, nouns: str = "") -> str:
     return f"{number} {noun}" if number == 1 else f"{number} {nouns or noun + 's'}"
 
 
-def _is_number(value: Value) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
-
-
 def whole_number(value: int, what: str, where: Where) -> int:
     """The value where it fits INT. Raises InterpreterError, IRL503."""
-    if not -_INT_LIMIT <= value < _INT_LIMIT:
+    if not -INT_LIMIT <= value < INT_LIMIT:
         raise fail("IRL503", where.source, where.span, what=what, type="INT", range=_INT_RANGE)
     return value
 
 
-def finite(value: Value, where: Where) -> Value:
+def finite(value: Any, where: Where) -> Any:
     """The value where all its numbers are finite. Raises InterpreterError, IRL503."""
     if isinstance(value, float) and not isfinite(value):
         raise fail("IRL503", where.source, where.span, what="the result", type="REAL", range=_REAL_RANGE)
@@ -70,15 +71,20 @@ def finite(value: Value, where: Where) -> Value:
     return value
 
 
+def parts_needed(type: Type) -> int:
+    """Number of values that an aggregate of a type takes; 0 for types that have none."""
+    if isinstance(type, Record):
+        return len(type.fields)
+    return type.size if isinstance(type, Array) else 0
+
+
 def assemble(type: Record | Array, parts: Sequence[Value], where: Where) -> Value:
-    """Structured value of parts that already fit. Raises InterpreterError: IRL223 for a wrong number,
-    IRL230 for an orientation that is no unit quaternion."""
-    expected = len(type.fields) if isinstance(type, Record) else type.size
-    if len(parts) != expected:
-        data = {"type": type.name, "expected": count(expected, "value"), "found": len(parts)}
-        raise fail("IRL223", where.source, where.span, **data)
+    """Structured value of as many parts as it needs, which already fit.
+
+    Raises InterpreterError, IRL230, for an orientation that is no unit quaternion.
+    """
     if isinstance(type, Array):
-        return ArrayValue(type, tuple(parts))
+        return ArrayValue(type, list(parts))
     value = RecordValue(type, tuple(parts))
     if type == ORIENTATION:
         return unit_orientation(value, where)

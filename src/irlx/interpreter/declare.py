@@ -1,183 +1,165 @@
-"""Declarations: from the text of a program part to its scope."""
+"""Declarations: from the text of a program part to its scope, and to the code of its routines."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from irlx.diagnostics import SourceText
-from irlx.diagnostics.diagnostic import near_matches
+from irlx.interpreter.code import Assembler, Code, Frame
+from irlx.interpreter.compiled import Run
+from irlx.interpreter.context import Context
 from irlx.interpreter.errors import fail
-from irlx.interpreter.evaluate import Evaluator
-from irlx.interpreter.scope import Scope, Variable
-from irlx.interpreter.setting import SYSTEM_REALS, Setting
-from irlx.interpreter.support import part_name
-from irlx.interpreter.system_names import LATER_TYPES
-from irlx.interpreter.types import (
-    JOINT_RECORDS,
-    POSE,
-    REAL,
-    Array,
-    Record,
-    Type,
-    ambiguous_field,
-    joint_type,
-    predefined_types,
-)
-from irlx.interpreter.values import RecordValue, Value, unset_value
+from irlx.interpreter.expressions import Expressions
+from irlx.interpreter.routines import compile_body, declared_routine
+from irlx.interpreter.scope import Routine, Scope, Variable
+from irlx.interpreter.signals import declared_signals
+from irlx.interpreter.statements import Statements
+from irlx.interpreter.support import EXECUTED_DECLARATIONS, part_name
+from irlx.interpreter.type_forms import TypeForms
+from irlx.interpreter.types import JOINT_RECORDS
+from irlx.interpreter.values import unset_value
+from irlx.interpreter.world import World
 from irlx.language import tree
 from irlx.language.builtins import SYSTEM_VARIABLES
 from irlx.language.data_lists import ImportedList
 from irlx.language.symbols import declared_symbols
 
 
-def declared_scope(
-    program: tree.Program, source: SourceText, setting: Setting, lists: Sequence[ImportedList] = ()
-) -> Scope:
-    """Scope of a program: system variables, poses of the cell, then what the program declares and imports.
+class Unit:
+    """A program or module: its scope, and the code of its initial values."""
 
-    Raises InterpreterError: IRL202 for a predefined type defined again, IRL221, IRL222 for a joint
-    type that does not fit the robot, IRL204 for an unknown type, IRL216 for a system variable
-    declared, IRL226 for a record of ambiguous fields, IRL508, IRL507 for arrays, IRL590 for a part
-    that is not executed yet, and what initial values may raise.
-    """
-    announced = frozenset(symbol.name.key for symbol in declared_symbols(program.declarations))
-    imported = frozenset(s.name.key for found in lists for s in declared_symbols(found.tree.declarations))
-    types = predefined_types(len(setting.joint_names))
-    scope = Scope(types=types, announced=announced, imported=imported)
-    for name in SYSTEM_REALS:
-        scope.variables[name.casefold()] = Variable(name, REAL, float(setting.defaults[name]))
-    for name, (at, turned) in setting.poses.items():
-        value = RecordValue(POSE, (_reals(POSE, 0, at), _reals(POSE, 1, turned)))
-        scope.variables[name.casefold()] = Variable(name, POSE, value, constant=True)
-    scope.variables["r_joint_act"] = _actual_joints(scope)
-    _Declarer(source, scope, setting).program(program, lists)
-    return scope
-
-
-def _reals(record: Record, field: int, values: tuple[float, ...]) -> Value:
-    type = record.fields[field][1]
-    if not isinstance(type, Record):
-        raise TypeError("parts of a pose are records")
-    return RecordValue(type, values)
-
-
-def _actual_joints(scope: Scope) -> Variable:
-    type = scope.types["joint"]
-    return Variable("R_JOINT_ACT", type, unset_value(type), constant=True)
-
-
-class _Declarer:
-    def __init__(self, source: SourceText, scope: Scope, setting: Setting) -> None:
-        self._source = source
-        self._scope = scope
-        self._setting = setting
-        self._evaluator = Evaluator(source, scope)
-        # Programs may define the joint types themselves; the other predefined types mean one thing.
-        self._fixed = frozenset(scope.types) - frozenset(JOINT_RECORDS)
-
-    def program(self, program: tree.Program, lists: Sequence[ImportedList]) -> None:
-        """Constants and types in text order, then data lists, then variables: parts come in any order."""
-        variables: list[tree.VarDeclaration] = []
-        for part in program.declarations:
-            if isinstance(part, tree.VarDeclaration):
-                variables.append(part)
-            elif isinstance(part, tree.TypeDefinition):
-                self._define(part)
-            elif isinstance(part, tree.ConstDeclaration):
-                self._variables(part.type, part.constants, constant=True)
-            elif not isinstance(part, tree.SystemSpecification | tree.ImportDatalist):
-                raise fail("IRL590", self._source, part.span, what=part_name(part))
-        for found in lists:
-            # Values of a list know the types of the program and each other, nothing else.
-            own = Scope(types=self._scope.types)
-            _Declarer(found.source, own, self._setting).variables(found.tree.declarations)
-            self._scope.variables.update(own.variables)
-        self.variables(variables)
-
-    def variables(self, parts: Sequence[tree.VarDeclaration]) -> None:
-        for part in parts:
-            self._variables(part.type, part.variables, constant=False)
-
-    def _define(self, part: tree.TypeDefinition) -> None:
-        type = self._type(part.type)
-        if isinstance(type, Record):
-            type = Record(part.name.name, type.fields)
-        key = part.name.key
-        if key in self._fixed:
-            raise fail("IRL202", self._source, part.name.span, name=part.name.name)
-        if key in JOINT_RECORDS:
-            self._check_joint_type(part, type)
-        self._scope.types[key] = type
-        if key == "main_joint":
-            self._scope.types["joint"] = joint_type(type)
-            self._scope.variables["r_joint_act"] = _actual_joints(self._scope)
-
-    def _check_joint_type(self, part: tree.TypeDefinition, type: Type) -> None:
-        joints, name = self._setting.joint_names, part.name
-        found = len(type.fields) if isinstance(type, Record) else 1
-        if not isinstance(type, Record) or found != len(joints):
-            data = {"type": name.name, "found": found, "joints": len(joints), "names": ", ".join(joints)}
-            raise fail("IRL221", self._source, name.span, **data)
-        # Groups show where a field gets its type; a type that only gets a second name has none.
-        groups = part.type.groups if isinstance(part.type, tree.RecordType) else ()
-        places = [group.type for group in groups for _ in group.names]
-        for index, (_, field) in enumerate(type.fields):
-            if field is not REAL:
-                place = places[index] if places else part.type
-                expected = f"REAL for a field of {name.name}"
-                raise fail("IRL222", self._source, place.span, expected=expected, found=field.name)
-
-    def _variables(
-        self, form: tree.TypeForm, variables: tuple[tree.Variable, ...], *, constant: bool
+    def __init__(
+        self,
+        world: World,
+        source: SourceText,
+        root: tree.Program | tree.Module,
+        lists: Sequence[ImportedList],
     ) -> None:
-        type = self._type(form)
+        """Declare everything that the text declares and imports.
+
+        Raises InterpreterError: IRL202 for a predefined type defined again, IRL221, IRL222 for a joint
+        type that does not fit the robot, IRL204 for an unknown type, IRL216 for a system variable declared,
+        IRL226 for a record of ambiguous fields, IRL508, IRL507 for arrays, IRL590 for a part that is not
+        executed yet, and what initial values may raise.
+        """
+        announced = frozenset(symbol.name.key for symbol in declared_symbols(root.declarations))
+        imported = frozenset(s.name.key for found in lists for s in declared_symbols(found.tree.declarations))
+        self.scope = world.scope(announced, imported)
+        # Programs may define the joint types themselves; the other predefined types mean one thing.
+        fixed = frozenset(self.scope.types) - frozenset(JOINT_RECORDS)
+        self._world, self._source = world, source
+        self._constants = Context(source, self.scope, world.setting, world.machine, None, world.rest)
+        self._types = TypeForms(self._constants, fixed)
+        self.code = Code(source)
+        self.assembler = Assembler(self.code)
+        self.context = replace(self._constants, assembler=self.assembler)
+        self._at_start = False
+        self._declare(root, lists)
+
+    def _declare(self, root: tree.Program | tree.Module, lists: Sequence[ImportedList]) -> None:
+        """Constants and types in text order, then data lists, then variables: parts come in any order."""
+        self._declare_fixed(root)
+        for found in lists:
+            self.scope.variables.update(self._world.data_list(found, self.scope, list_values))
+        routines: list[tuple[Routine, tree.ProcedureDeclaration | tree.FunctionDeclaration]] = []
+        for part in root.declarations:
+            if isinstance(part, tree.ProcedureDeclaration | tree.FunctionDeclaration):
+                routine = declared_routine(part, self._types, self._source)
+                self.scope.routines[part.name.key] = routine
+                routines.append((routine, part))
+            elif isinstance(part, tree.SignalDeclaration):
+                for signal in declared_signals(part, Expressions(self._constants), self.scope):
+                    self.scope.variables[signal.name.casefold()] = signal
+        for part in root.declarations:
+            if isinstance(part, tree.VarDeclaration):
+                self._add(part.type, part.variables, constant=False)
+        for routine, part in routines:
+            compile_body(routine, part, self._constants)
+
+    def _declare_fixed(self, root: tree.Program | tree.Module) -> None:
+        """What is imported from modules, types and constants."""
+        for part in root.declarations:
+            if isinstance(part, tree.ImportFrom):
+                self._import(part)
+        for part in root.declarations:
+            if isinstance(part, tree.TypeDefinition):
+                self._types.define(part)
+            elif isinstance(part, tree.ConstDeclaration):
+                self._add(part.type, part.constants, constant=True)
+            elif not isinstance(part, EXECUTED_DECLARATIONS):
+                raise fail("IRL590", self._source, part.span, what=part_name(part))
+
+    def finish(self, root: tree.Node, body: Sequence[tree.Statement]) -> Code:
+        """Add statements behind the initial values, and make the code."""
+        statements = Statements(self.context)
+        statements.body(body)
+        statements.end(root)
+        self.assembler.finish()
+        return self.code
+
+    def _import(self, part: tree.ImportFrom) -> None:
+        """Bring in names of a module. Raises InterpreterError, IRL218, IRL219."""
+        exporting = self._world.modules.get(part.module.key)
+        if exporting is None:
+            raise fail("IRL218", self._source, part.module.span, module=part.module.name)
+        for name in part.names:
+            found = exporting.found(name.key)
+            type = exporting.type(name.key) if name.key in exporting.announced else None
+            if isinstance(found, Routine):
+                self.scope.routines[name.key] = found
+            elif isinstance(found, Variable) and name.key in exporting.announced:
+                self.scope.variables[name.key] = found
+            elif type is not None:
+                self.scope.types[name.key] = type
+                if name.key == "main_joint":
+                    self.scope.types["joint"] = exporting.types["joint"]
+            else:
+                data = {"name": name.name, "file": f"{part.module.name}.irl", "near": ""}
+                raise fail("IRL219", self._source, name.span, **data)
+
+    def _add(self, form: tree.TypeForm, variables: tuple[tree.Variable, ...], *, constant: bool) -> None:
+        """Declare variables or constants. Values that call or ask, and all behind them, come at the start
+        of the run; the others are there at once, for the bounds of array types."""
+        type = self._types.type(form)
+        expressions = Expressions(self._constants)
         for variable in variables:
-            if variable.name.key in SYSTEM_VARIABLES:
-                raise fail("IRL216", self._source, variable.name.span, name=variable.name.name)
+            name = variable.name
+            if name.key in SYSTEM_VARIABLES:
+                raise fail("IRL216", self._source, name.span, name=name.name)
+            declared = Variable(name.name, type, unset_value(type), constant)
+            if variable.initial is not None:
+                asks = Expressions(self.context).suspends(variable.initial)
+                self._at_start = self._at_start or (asks and not constant)
+                if self._at_start and not constant:
+                    found = Expressions(self.context).value(variable.initial, type)
+                    Statements(self.context).run(variable, _setting(declared, found.run))
+                else:
+                    declared.value = expressions.value(variable.initial, type).run([])
+            self.scope.variables[name.key] = declared
+
+
+def _setting(variable: Variable, run: Run) -> Run:
+    def set_variable(frame: Frame) -> None:
+        variable.value = run(frame)
+
+    return set_variable
+
+
+def list_values(found: ImportedList, scope: Scope, world: World) -> dict[str, Variable]:
+    """Variables of a data list, whose values know the types of the program and each other, nothing else."""
+    own = Scope(types=scope.types)
+    context = Context(found.source, own, world.setting, world.machine, None, world.rest)
+    types, expressions = TypeForms(context, frozenset()), Expressions(context)
+    declared: dict[str, Variable] = {}
+    for part in found.tree.declarations:
+        type = types.type(part.type)
+        for variable in part.variables:
+            name = variable.name
+            if name.key in SYSTEM_VARIABLES:
+                raise fail("IRL216", found.source, name.span, name=name.name)
             value = unset_value(type)
             if variable.initial is not None:
-                value = self._evaluator.value(variable.initial, type)
-            name = variable.name
-            self._scope.variables[name.key] = Variable(name.name, type, value, constant)
-
-    def _type(self, form: tree.TypeForm) -> Type:
-        if isinstance(form, tree.NamedType):
-            return self._named(form.name)
-        if isinstance(form, tree.ArrayType):
-            return self._array(form)
-        fields: list[tuple[str, Type]] = []
-        for group in form.groups:
-            type = self._type(group.type)
-            fields += [(name.name, type) for name in group.names]
-        record = Record("RECORD", tuple(fields))
-        for name in (name for group in form.groups for name in group.names):
-            clash = ambiguous_field(record, name.name)
-            if clash:
-                data = {"name": name.name, "field": clash[0], "rest": clash[1]}
-                raise fail("IRL226", self._source, name.span, **data)
-        return record
-
-    def _named(self, name: tree.Name) -> Type:
-        found = self._scope.types.get(name.key)
-        if found is not None:
-            return found
-        if name.key in LATER_TYPES:
-            raise fail("IRL590", self._source, name.span, what=f"the type {name.name}")
-        near = "; it is defined further down" if name.key in self._scope.announced else ""
-        near = near or near_matches(name.name, [key.upper() for key in self._scope.types])
-        raise fail("IRL204", self._source, name.span, name=name.name, near=near)
-
-    def _array(self, form: tree.ArrayType) -> Type:
-        ranges = []
-        for dimension in form.dimensions:
-            low, high = self._evaluator.whole(dimension.lower), self._evaluator.whole(dimension.upper)
-            if low > high:
-                raise fail("IRL508", self._source, dimension.span, low=low, high=high)
-            ranges.append((low, high))
-        array = Array(tuple(ranges), self._type(form.element))
-        if array.size > _MOST_ELEMENTS:
-            raise fail("IRL507", self._source, form.span, size=array.size, most=_MOST_ELEMENTS)
-        return array
-
-
-_MOST_ELEMENTS = 10_000_000
+                value = expressions.value(variable.initial, type).run([])
+            declared[name.key] = own.variables[name.key] = Variable(name.name, type, value)
+    return declared

@@ -1,23 +1,24 @@
-"""Built-in functions of the executed part of the language."""
+"""Built-in functions on numbers, texts and positions; those on orientations are in `rotations`."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from irlx.interpreter import quaternion as q
-from irlx.interpreter.types import INT, ORIENTATION, POSE, POSITION, REAL, Type
+from irlx.interpreter.types import CHAR, INT, ORIENTATION, POSE, POSITION, REAL, STRING, Type
 from irlx.interpreter.values import RecordValue, Value
 
 
 @dataclass(frozen=True)
 class Function:
-    """A built-in: types of its parameters (several where one may be any of them), and its meaning
-    on values that fit them."""
+    """A built-in: types of its parameters (several where one may be any of them), its meaning on values
+    that fit them, and the type of the result, None for that of the first argument."""
 
     name: str
     parameters: tuple[Type | tuple[Type, ...], ...]
+    result: Type | None
     apply: Callable[..., Value]
 
 
@@ -73,52 +74,65 @@ def inverse(value: RecordValue) -> RecordValue:
     return pose((-x, -y, -z), back)
 
 
-def _turn_about(axis: RecordValue, angle: float) -> RecordValue:
-    vector = vector_of(axis)
-    length = q.norm(vector)
-    if length == 0.0:
-        raise ValueError("an axis of length 0")
-    return orientation(q.about((vector[0] / length, vector[1] / length, vector[2] / length), angle))
-
-
-def _angles(order: str) -> Callable[[float, float, float], Value]:
-    return lambda first, second, third: orientation(q.intrinsic(order, (first, second, third)))
-
-
-def _quaternion(w: float, x: float, y: float, z: float) -> RecordValue:
-    return orientation((w, x, y, z))
-
-
 def _tangent(angle: float) -> float:
     if angle % 180.0 == 90.0:
         raise ValueError("the tangent of a right angle")
     return math.tan(math.radians(angle))
 
 
-_ONE, _TWO, _THREE, _FOUR = ((REAL,) * count for count in (1, 2, 3, 4))
+def _round(value: float) -> int:
+    """The nearest whole number, halves away from zero; Python rounds these to even numbers."""
+    whole = math.trunc(value)
+    return whole + int(math.copysign(1, value)) if abs(value - whole) >= 0.5 else whole
 
-_FUNCTIONS = (
-    Function("ORIQUAT", _FOUR, _quaternion),
-    Function("ORIVANG", (POSITION, REAL), _turn_about),
-    Function("ORIXYZ", _THREE, _angles("XYZ")),
-    Function("ORIYXZ", _THREE, _angles("YXZ")),
-    Function("ORIZYX", _THREE, _angles("ZYX")),
-    Function("POSITION", _THREE, lambda x, y, z: position((x, y, z))),
-    Function("POSE", (POSITION, ORIENTATION), lambda at, turned: RecordValue(POSE, (at, turned))),
-    Function("INV", ((POSE, ORIENTATION),), inverse),
-    Function("NORM", (POSITION,), lambda v: q.norm(vector_of(v))),
-    Function("SQRT", _ONE, math.sqrt),
-    Function("SIN", _ONE, lambda a: math.sin(math.radians(a))),
-    Function("COS", _ONE, lambda a: math.cos(math.radians(a))),
-    Function("TAN", _ONE, _tangent),
-    Function("ASIN", _ONE, lambda x: math.degrees(math.asin(x))),
-    Function("ACOS", _ONE, lambda x: math.degrees(math.acos(x))),
-    Function("ATAN", _ONE, lambda x: math.degrees(math.atan(x))),
-    Function("ATAN2", _TWO, lambda y, x: math.degrees(math.atan2(y, x))),
-    Function("EXP", _ONE, math.exp),
-    Function("LN", _ONE, math.log),
-    Function("ABS", ((INT, REAL),), abs),
+
+def _character(number: int) -> str:
+    if 0xD800 <= number <= 0xDFFF:
+        raise ValueError("half a character")
+    return chr(number)
+
+
+def _dot(a: RecordValue, b: RecordValue) -> float:
+    return sum(x * y for x, y in zip(vector_of(a), vector_of(b), strict=True))
+
+
+def _cross(a: RecordValue, b: RecordValue) -> RecordValue:
+    return position(q.cross(vector_of(a), vector_of(b)))
+
+
+def _distance(a: RecordValue, b: RecordValue) -> float:
+    """Between two positions, or those of poses."""
+    one, other = (parts_of(v)[0] if v.type == POSE else vector_of(v) for v in (a, b))
+    return math.dist(one, other)
+
+
+_ONE, _TWO, _THREE = ((REAL,) * count for count in (1, 2, 3))
+_PLACE = (POSITION, POSE)
+
+PLAIN = (
+    Function("POSITION", _THREE, POSITION, lambda x, y, z: position((x, y, z))),
+    Function("POSE", (POSITION, ORIENTATION), POSE, lambda at, turned: RecordValue(POSE, (at, turned))),
+    Function("INV", ((POSE, ORIENTATION),), None, inverse),
+    Function("NORM", (POSITION,), REAL, lambda v: q.norm(vector_of(v))),
+    Function("CROSS", (POSITION, POSITION), POSITION, _cross),
+    Function("DOT", (POSITION, POSITION), REAL, _dot),
+    Function("DISTANCE", (_PLACE, _PLACE), REAL, _distance),
+    Function("SQRT", _ONE, REAL, math.sqrt),
+    Function("SIN", _ONE, REAL, lambda a: math.sin(math.radians(a))),
+    Function("COS", _ONE, REAL, lambda a: math.cos(math.radians(a))),
+    Function("TAN", _ONE, REAL, _tangent),
+    Function("ASIN", _ONE, REAL, lambda x: math.degrees(math.asin(x))),
+    Function("ACOS", _ONE, REAL, lambda x: math.degrees(math.acos(x))),
+    Function("ATAN", _ONE, REAL, lambda x: math.degrees(math.atan(x))),
+    Function("ATAN2", _TWO, REAL, lambda y, x: math.degrees(math.atan2(y, x))),
+    Function("EXP", _ONE, REAL, math.exp),
+    Function("LN", _ONE, REAL, math.log),
+    Function("ABS", ((INT, REAL),), None, abs),
+    Function("ROUND", _ONE, INT, _round),
+    Function("TRUNC", _ONE, INT, math.trunc),
+    Function("FLOAT", _ONE, REAL, float),
+    Function("ORD", (CHAR,), INT, ord),
+    Function("CHR", (INT,), CHAR, _character),
+    Function("LEN", (STRING,), INT, len),
 )
-
-FUNCTIONS: Mapping[str, Function] = {function.name.casefold(): function for function in _FUNCTIONS}
-"""Executed built-in functions by casefolded name; angles in degrees, lengths in mm."""
+"""Built-ins on numbers, texts and positions; angles in degrees, lengths in mm."""

@@ -1,326 +1,123 @@
-"""Statements: program tree -> blocks."""
+"""A program and its modules: tree -> blocks."""
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator, Sequence
-from math import radians
+import gc
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 
-from irlx.blocks import (
-    ArcCourse,
-    AskPosture,
-    AskPostureOf,
-    Block,
-    CriterionBlock,
-    CriterionClause,
-    CyclicBlock,
-    FreezeBlock,
-    HaltBlock,
-    JointRange,
-    JointTarget,
-    LimitClause,
-    LimitKind,
-    LimitSwitchBlock,
-    MotionLaw,
-    MoveBlock,
-    MoveKind,
-    Origin,
-    PoseTarget,
-    Question,
-    ReconfigureBlock,
-)
 from irlx.diagnostics import SourceText
-from irlx.interpreter.declare import declared_scope
-from irlx.interpreter.errors import fail
-from irlx.interpreter.evaluate import Evaluator, replaced
-from irlx.interpreter.parameters import criterion_choice, criterion_name, positive, share
-from irlx.interpreter.scope import Variable
+from irlx.interpreter.code import Code, Step
+from irlx.interpreter.declare import Unit
+from irlx.interpreter.list_text import Rewritten
+from irlx.interpreter.machine import MAX_STEPS, Answer, Blocks, Machine
+from irlx.interpreter.scope import Scope
 from irlx.interpreter.setting import Setting
-from irlx.interpreter.support import MOVE_PARAMS, missing_in_move, part_name, reads_actual
-from irlx.interpreter.targets import origin_of, pose_target
-from irlx.interpreter.types import POSE, POSITION, STRING, Record, Type
-from irlx.interpreter.unanswered import Unanswered
-from irlx.interpreter.values import RecordValue, Value, is_set
+from irlx.interpreter.world import World
 from irlx.language import tree
 from irlx.language.data_lists import ImportedList
+from irlx.language.modules import ImportedModule
 
-Answer = tuple[float, ...] | None
-Blocks = Generator[Block | Question, Answer, None]
+__all__ = ["MAX_STEPS", "Answer", "Blocks", "Interpretation", "declared_scope", "interpret"]
 
-_LIMIT_TYPES = {
-    "POSITION": ("main_joint_min", "main_joint_max"),
-    "SPEED": ("main_joint_speed_min", "main_joint_speed_max"),
-    "ACCELERATION": ("main_joint_accel_min", "main_joint_accel_max"),
-}
+
+_FRAMES = 4000
+"""Frames of Python for the 150 levels of an expression, ten or so for each, inside those of statements."""
+
+
+class Interpretation:
+    """A program that is ready to run: everything declared, every body compiled.
+
+    `lists` are the data lists that it imports, `modules` all modules that it needs, each behind those that
+    it imports itself. Raises InterpreterError for declarations that are wrong.
+    """
+
+    def __init__(
+        self,
+        program: tree.Program,
+        source: SourceText,
+        setting: Setting,
+        lists: Sequence[ImportedList] = (),
+        modules: Sequence[ImportedModule] = (),
+        max_steps: int = MAX_STEPS,
+    ) -> None:
+        self._machine = Machine(max_steps)
+        self._world = World(setting, self._machine)
+        with _compiling():
+            self._prepare(program, source, lists, modules)
+
+    def _prepare(
+        self,
+        program: tree.Program,
+        source: SourceText,
+        lists: Sequence[ImportedList],
+        modules: Sequence[ImportedModule],
+    ) -> None:
+        starts: list[Code] = []
+        for module in modules:
+            unit = Unit(self._world, module.source, module.tree, module.data_lists)
+            self._world.modules[module.key] = unit.scope
+            starts.append(unit.finish(module.tree, ()))
+        main = Unit(self._world, source, program, lists)
+        self.scope: Scope = main.scope
+        code = main.finish(program, program.body)
+        # The initial values of modules come first, each as a call: their places are in other texts.
+        self._code = Code(source)
+        for number, start in enumerate([*starts, code]):
+            self._code.steps.append(self._start(start, program, number + 1))
+            self._code.spans.append(program.name.span)
+
+    def _start(self, code: Code, program: tree.Program, following: int) -> Step:
+        machine, outer, span = self._machine, self._code, program.name.span
+        return lambda frame: machine.enter(code, (), (outer, frame, following, -1), span)
+
+    def run(self) -> Blocks:
+        """Yield the blocks in order, and questions whose answers are sent back in; runs once.
+
+        Raises InterpreterError at the statement that goes wrong; the blocks before it stay valid.
+        """
+        end: Callable[..., int] = lambda frame: self._machine.leave(self._code, None)  # noqa: E731
+        self._code.steps.append(end)
+        self._code.spans.append(self._code.spans[-1])
+        return self._machine.run(self._code)
+
+    def rewritten(self, found: ImportedList) -> Rewritten:
+        """Text of an imported data list with the values that its variables have now."""
+        return self._world.rewritten(found)
+
+
+@contextmanager
+def _compiling() -> Iterator[None]:
+    """Room for expressions as deep as the parser takes them, and no search for garbage meanwhile.
+
+    Compiling makes many objects, all of which stay: to look for others among them is half of the time.
+    """
+    collecting, depth = gc.isenabled(), sys.getrecursionlimit()
+    gc.disable()
+    sys.setrecursionlimit(max(depth, _FRAMES))
+    try:
+        yield
+    finally:
+        sys.setrecursionlimit(depth)
+        if collecting:
+            gc.enable()
 
 
 def interpret(
-    program: tree.Program, source: SourceText, setting: Setting, lists: Sequence[ImportedList] = ()
+    program: tree.Program,
+    source: SourceText,
+    setting: Setting,
+    lists: Sequence[ImportedList] = (),
+    modules: Sequence[ImportedModule] = (),
+    max_steps: int = MAX_STEPS,
 ) -> Blocks:
-    """Run a program: yields its blocks in order, and questions whose answers are sent back in.
-
-    `lists` are the data lists that it imports. Raises InterpreterError at the statement that goes wrong; the
-    blocks before it stay valid.
-    """
-    return _Interpreter(program, source, setting, lists).run()
+    """Run a program; see `Interpretation`. It may execute `max_steps` statements (IRL510)."""
+    return Interpretation(program, source, setting, lists, modules, max_steps).run()
 
 
-class _Interpreter:
-    def __init__(
-        self, program: tree.Program, source: SourceText, setting: Setting, lists: Sequence[ImportedList]
-    ) -> None:
-        self._program = program
-        self._source = source
-        self._setting = setting
-        self._scope = declared_scope(program, source, setting, lists)
-        self._answers: dict[AskPostureOf, Value] = {}
-        self._evaluator = Evaluator(source, self._scope, self._answers)
-        self._blocks = 0
-
-    def run(self) -> Blocks:
-        for statement in self._program.body:
-            if reads_actual(statement):
-                answer = yield AskPosture(self._origin(statement))
-                self._set_actual(answer or ())
-            yield from (yield from self._answered(statement))
-            if isinstance(statement, tree.Halt):
-                return
-
-    def _answered(self, statement: tree.Statement) -> Generator[Question, Answer, list[Block]]:
-        """Blocks of a statement. What only the machine can tell is asked, and all evaluated again:
-        expressions change nothing, and an assignment happens once everything has a value."""
-        self._answers.clear()
-        number = self._blocks
-        while True:
-            try:
-                return self._blocks_of(statement)
-            except Unanswered as unanswered:
-                self._blocks = number
-                question = unanswered.question
-            self._answers[question] = self._main_joints((yield question) or ())
-
-    def _blocks_of(self, statement: tree.Statement) -> list[Block]:
-        """Blocks of a statement in their order; an assignment has none."""
-        match statement:
-            case tree.Assignment():
-                self._assign(statement)
-                return []
-            case tree.Move():
-                return list(self._move(statement))
-            case tree.Reconfiguration():
-                return [self._reconfigure(statement)]
-            case tree.Halt():
-                return [HaltBlock(id=self._next_id(), origin=self._origin(statement))]
-        return [self._switch(statement)]
-
-    # ---- bookkeeping
-
-    def _next_id(self) -> int:
-        self._blocks += 1
-        return self._blocks
-
-    def _origin(self, node: tree.Node, last: tree.Node | None = None) -> Origin:
-        return origin_of(self._source, node, last)
-
-    def _set_actual(self, joints: tuple[float, ...]) -> None:
-        """Store the posture (rad, m) in R_JOINT_ACT (deg, mm)."""
-        variable = self._scope.variables["r_joint_act"]
-        variable.value = replaced(variable.value, [0], self._main_joints(joints))
-
-    def _main_joints(self, joints: tuple[float, ...]) -> RecordValue:
-        """MAIN_JOINT (deg, mm) of a posture (rad, m)."""
-        type = self._scope.types["main_joint"]
-        if not isinstance(type, Record):
-            raise TypeError("joint types are records")
-        return RecordValue(type, tuple(value / self._unit(index) for index, value in enumerate(joints)))
-
-    def _unit(self, joint: int) -> float:
-        """Size of the program's unit of a joint in SI: mm in m, or degree in rad."""
-        return 1e-3 if self._setting.prismatic[joint] else radians(1.0)
-
-    def _si(self, joint: int, value: float) -> float:
-        return value * 1e-3 if self._setting.prismatic[joint] else radians(value)
-
-    # ---- statements
-
-    def _assign(self, statement: tree.Assignment) -> None:
-        variable = self._evaluator.variable(statement.target.base)
-        if variable.constant:
-            raise fail("IRL211", self._source, statement.target.span, name=variable.name, kind="a constant")
-        steps = self._evaluator.steps(statement.target)
-        value = self._evaluator.value(statement.value, _part_type(variable, steps))
-        variable.value = replaced(variable.value, steps, value)
-
-    def _switch(self, statement: tree.Statement) -> Block:
-        origin, id = self._origin(statement), self._next_id()
-        match statement:
-            case tree.LimitSwitch():
-                joint_range = self._range(statement.kind, statement.lower, statement.upper)
-                return LimitSwitchBlock(
-                    id=id, origin=origin, kind=LimitKind(statement.kind), range=joint_range
-                )
-            case tree.LimitSwitchEnd():
-                return LimitSwitchBlock(id=id, origin=origin, kind=LimitKind(statement.kind), range=None)
-            case tree.FreezeStart():
-                joints = tuple(self._evaluator.whole(joint) for joint in statement.joints)
-                return FreezeBlock(id=id, origin=origin, joints=joints)
-            case tree.FreezeEnd():
-                return FreezeBlock(id=id, origin=origin, joints=())
-            case tree.CyclicStart():
-                return CyclicBlock(id=id, origin=origin, active=True)
-            case tree.CyclicEnd():
-                return CyclicBlock(id=id, origin=origin, active=False)
-            case tree.CriterionStart():
-                choice = criterion_choice(statement, self._evaluator)
-                return CriterionBlock(id=id, origin=origin, name=choice.name, choice=choice)
-            case tree.CriterionEnd(name=name):
-                return CriterionBlock(id=id, origin=origin, name=criterion_name(name), choice=None)
-            case _:
-                raise fail("IRL590", self._source, statement.span, what=part_name(statement))
-
-    def _range(self, kind: str, lower: tree.Expression, upper: tree.Expression) -> JointRange:
-        types = tuple(self._scope.types[key] for key in _LIMIT_TYPES[kind])
-        bounds = []
-        for expression, type in zip((lower, upper), types, strict=True):
-            value = self._evaluator.value(expression, type)
-            bounds.append(self._joint_values(value))
-        return JointRange(*bounds)
-
-    def _joint_values(self, value: Value) -> tuple[float, ...]:
-        if not isinstance(value, RecordValue):
-            raise TypeError("joint values come in a record")
-        return tuple(self._si(index, real) for index, real in enumerate(value.reals()))
-
-    # ---- moves
-
-    def _move(self, statement: tree.Move) -> Iterator[Block]:
-        missing = missing_in_move(statement)
-        if missing is not None:
-            node, what = missing
-            raise fail("IRL590", self._source, node.span, what=what)
-        law = self._law(statement)
-        limits = tuple(
-            LimitClause(LimitKind(clause.kind), self._range(clause.kind, clause.lower, clause.upper), origin)
-            for clause in statement.clauses
-            if isinstance(clause, tree.WithLimit)
-            for origin in (self._origin(clause),)
-        )
-        criteria = tuple(
-            CriterionClause(criterion_choice(clause, self._evaluator), self._origin(clause))
-            for clause in statement.clauses
-            if isinstance(clause, tree.WithCriterion)
-        )
-        stops = _stops(statement)
-        for (via, expression), postures in zip(stops, self._postures(statement, len(stops)), strict=True):
-            target = self._target(expression)
-            origin = (
-                self._origin(via or expression, expression) if len(stops) > 1 else self._origin(statement)
-            )
-            yield MoveBlock(
-                id=self._next_id(),
-                origin=origin,
-                kind=MoveKind(statement.kind),
-                target=target,
-                law=law,
-                limits=limits,
-                course=None if via is None else self._course(statement, via, postures[0]),
-                reconfiguration=postures[1],
-                criteria=criteria,
-            )
-
-    def _postures(
-        self, statement: tree.Move, moves: int
-    ) -> list[tuple[JointTarget | None, JointTarget | None]]:
-        """Postures of WITH RECONFIGURATION, at the via point and at the end of each move of a MOVE.
-
-        A CIRCLE has one for each target, or one for each end point.
-        """
-        for clause in statement.clauses:
-            if isinstance(clause, tree.WithReconfiguration):
-                postures = [self._posture(expression) for expression in clause.targets]
-                if len(postures) == moves:
-                    return [(None, posture) for posture in postures]
-                return list(zip(postures[::2], postures[1::2], strict=True))
-        return [(None, None)] * moves
-
-    def _posture(self, expression: tree.Expression) -> JointTarget:
-        main, joint = self._scope.types["main_joint"], self._scope.types["joint"]
-        value = self._evaluator.one_of(expression, (main, joint))
-        if not isinstance(value, RecordValue):
-            raise TypeError("postures are records")
-        return JointTarget(self._joint_values(value.values[0] if value.type == joint else value))
-
-    def _reconfigure(self, statement: tree.Reconfiguration) -> Block:
-        target, law = self._posture(statement.target), self._law(statement)
-        return ReconfigureBlock(id=self._next_id(), origin=self._origin(statement), target=target, law=law)
-
-    def _course(self, statement: tree.Move, via: tree.Expression, posture: JointTarget | None) -> ArcCourse:
-        """Via point of a CIRCLE, its posture where it has one, with what ANGLE and CIRC_ORI say."""
-        given = {param.name.key: param.value for param in statement.params}
-        angle, turning = None, "END"
-        if "angle" in given:
-            angle = radians(self._evaluator.number(given["angle"]))
-            if angle == 0.0:
-                data = {"param": "ANGLE", "expected": "other than 0", "value": "0"}
-                raise fail("IRL505", self._source, given["angle"].span, **data)
-        if "circ_ori" in given:
-            turning = str(self._evaluator.value(given["circ_ori"], STRING))
-            if turning.upper() not in ("VIA", "END"):
-                data = {"param": "CIRC_ORI", "expected": "'VIA' or 'END'", "value": f"'{turning}'"}
-                raise fail("IRL505", self._source, given["circ_ori"].span, **data)
-        return ArcCourse(self._target(via), angle, turning.upper() == "VIA", posture)
-
-    def _target(self, expression: tree.Expression) -> PoseTarget | JointTarget:
-        main, joint = self._scope.types["main_joint"], self._scope.types["joint"]
-        value = self._evaluator.one_of(expression, (POSE, POSITION, main, joint))
-        if not isinstance(value, RecordValue):
-            raise TypeError("targets are records")
-        if value.type in (POSITION, POSE):
-            return pose_target(value)
-        return JointTarget(self._joint_values(value.values[0] if value.type == joint else value))
-
-    def _law(self, statement: tree.Move | tree.Reconfiguration) -> MotionLaw:
-        params = statement.params if isinstance(statement, tree.Move) else ()
-        given = {param.name.key: param.value for param in params}
-
-        def real(param: str) -> float:
-            expression = given.get(param)
-            if expression is not None:
-                value = self._evaluator.number(expression)
-                return positive(param.upper(), value, expression, self._source)
-            variable = self._scope.variables[MOVE_PARAMS[param].casefold()]
-            if not isinstance(variable.value, float) or not is_set(variable.value):
-                raise TypeError("system variables are numbers")
-            return positive(variable.name, variable.value, statement, self._source)
-
-        def part(param: str) -> float:
-            return share(param.upper(), real(param), given.get(param, statement), self._source)
-
-        duration = None
-        if "time" in given:
-            value = self._evaluator.number(given["time"])
-            duration = positive("TIME", value, given["time"], self._source)
-        return MotionLaw(
-            speed=real("speed") * 1e-3,
-            acc=real("acc") * 1e-3,
-            speed_ori=radians(real("speed_ori")),
-            acc_ori=radians(real("acc_ori")),
-            speed_ptp=part("speed_ptp"),
-            acc_ptp=part("acc_ptp"),
-            duration=duration,
-        )
-
-
-def _stops(statement: tree.Move) -> list[tuple[tree.Expression | None, tree.Expression]]:
-    """Where the moves of a MOVE end, each with its via point: CIRCLE takes its targets in pairs."""
-    targets = statement.targets
-    if statement.kind != "CIRCLE":
-        return [(None, target) for target in targets]
-    return list(zip(targets[::2], targets[1::2], strict=True))
-
-
-def _part_type(variable: Variable, steps: list[int]) -> Type:
-    """Type of the part of a variable that `steps` lead to."""
-    type = variable.type
-    for step in steps:
-        type = type.fields[step][1] if isinstance(type, Record) else type.element  # type: ignore[union-attr]
-    return type
+def declared_scope(
+    program: tree.Program, source: SourceText, setting: Setting, lists: Sequence[ImportedList] = ()
+) -> Scope:
+    """Scope of a program before its first statement: what it declares and imports, with first values."""
+    return Interpretation(program, source, setting, lists).scope

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from functools import partial
+
 from irlx.blocks import CriterionChoice, CriterionParam
 from irlx.diagnostics import SourceText
+from irlx.interpreter.compiled import Compiled
 from irlx.interpreter.errors import fail
-from irlx.interpreter.evaluate import Evaluator
+from irlx.interpreter.expressions import Expressions
+from irlx.interpreter.types import REAL
 from irlx.language import tree
 
 _WEIGHT = "weight"
@@ -27,16 +32,24 @@ def share(name: str, percent: float, node: tree.Node, source: SourceText) -> flo
     return percent / 100.0
 
 
-def criterion_choice(node: tree.CriterionStart | tree.WithCriterion, evaluator: Evaluator) -> CriterionChoice:
+def criterion_params(
+    node: tree.CriterionStart | tree.WithCriterion, expressions: Expressions
+) -> list[tuple[tree.Node, Callable[[], Compiled]]]:
+    """Expressions of the parameters of a criterion, in their order."""
+    return [(param.value, partial(expressions.value, param.value, REAL)) for param in node.params]
+
+
+def choice_of(
+    node: tree.CriterionStart | tree.WithCriterion, values: Sequence[float], source: SourceText
+) -> CriterionChoice:
     """Criterion of a switch or clause: WEIGHT, 1 where it is not given, and the others in their order.
 
-    Raises InterpreterError: IRL505 for a WEIGHT that is not greater than 0, and what their expressions raise.
+    Raises InterpreterError: IRL505 for a WEIGHT that is not greater than 0.
     """
     weight, params = 1.0, []
-    for param in node.params:
-        value = evaluator.number(param.value)
+    for param, value in zip(node.params, values, strict=True):
         if param.name.key == _WEIGHT:
-            weight = positive("WEIGHT", value, param.value, evaluator.source)
+            weight = positive("WEIGHT", value, param.value, source)
         else:
             params.append(CriterionParam(param.name.key.upper(), value))
     return CriterionChoice(criterion_name(node.name), weight, tuple(params))

@@ -7,41 +7,32 @@ from collections.abc import Iterator, Sequence
 from irlx.blocks.criterion import LIBRARY
 from irlx.diagnostics import Diagnostic, Place, SourceText, report
 from irlx.diagnostics.diagnostic import near_matches
-from irlx.interpreter.evaluate import POSTURE, missing_in_posture
-from irlx.interpreter.functions import FUNCTIONS
+from irlx.interpreter.asking import ACTUAL, ASKING
 from irlx.interpreter.parameters import criterion_name
+from irlx.interpreter.rotations import FUNCTIONS
 from irlx.interpreter.setting import SYSTEM_REALS
 from irlx.interpreter.system_names import LATER_TYPES, system_name
 from irlx.language import builtins, tree
 from irlx.language.data_lists import ImportedList
-from irlx.language.symbols import declared_symbols
+from irlx.language.modules import ImportedModule
+from irlx.language.symbols import declared_symbols, parameter_symbols
 
-_DECLARATIONS = (
+EXECUTED_DECLARATIONS = (
     tree.VarDeclaration,
     tree.ConstDeclaration,
     tree.TypeDefinition,
     tree.SystemSpecification,
     tree.ImportDatalist,
-)
-_STATEMENTS = (
-    tree.Assignment,
-    tree.Halt,
-    tree.Move,
-    tree.LimitSwitch,
-    tree.LimitSwitchEnd,
-    tree.FreezeStart,
-    tree.FreezeEnd,
-    tree.CyclicStart,
-    tree.CyclicEnd,
-    tree.Reconfiguration,
-    tree.CriterionStart,
-    tree.CriterionEnd,
+    tree.ImportFrom,
+    tree.Export,
+    tree.ProcedureDeclaration,
+    tree.FunctionDeclaration,
+    tree.SignalDeclaration,
 )
 _CLAUSES = (tree.WithLimit, tree.WithReconfiguration, tree.WithCriterion)
-_EXECUTED_FUNCTIONS = frozenset({*FUNCTIONS, POSTURE})
-_READ_ONLY_FUNCTIONS = (frozenset(builtins.FUNCTIONS) | frozenset(builtins.TYPES)) - _EXECUTED_FUNCTIONS
-_ACTUAL = "r_joint_act"
-_EXECUTED_NAMES = frozenset({_ACTUAL, *(name.casefold() for name in SYSTEM_REALS)})
+_EXECUTED_FUNCTIONS = frozenset({*FUNCTIONS, *ASKING, *builtins.TYPES}) - LATER_TYPES
+_READ_ONLY_FUNCTIONS = frozenset(builtins.FUNCTIONS) - _EXECUTED_FUNCTIONS
+_EXECUTED_NAMES = ACTUAL | {name.casefold() for name in SYSTEM_REALS}
 MOVE_PARAMS = {
     "speed": "R_SPEED",
     "acc": "R_ACC",
@@ -55,36 +46,19 @@ MOVE_PARAMS = {
 }
 """Executed parameters of MOVE by casefolded name, and the system variable with their default, '' for none."""
 
-_NAMES = {
-    "ImportFrom": "FROM .. IMPORT",
-    "Export": "EXPORT",
-    "RobotBinding": "ROBOT",
-    "StandardChannel": "STANDARD_IN and STANDARD_OUT",
-    "SignalDeclaration": "INPUT and OUTPUT",
-    "ProcedureDeclaration": "PROCEDURE",
-    "FunctionDeclaration": "FUNCTION",
-    "Call": "a procedure call",
-    "Return": "RETURN",
-    "Goto": "GOTO",
-    "Label": "a label",
-    "If": "IF",
-    "Case": "CASE",
-    "For": "FOR",
-    "While": "WHILE",
-    "Repeat": "REPEAT",
-    "Exit": "EXIT",
-    "Pause": "PAUSE",
-    "WaitTime": "WAIT",
-    "WaitFor": "WAIT FOR",
-    "ObstacleStart": "OBSTACLE",
-    "ObstacleEnd": "OBSTACLEEND",
-    "WithTolerance": "WITH TOLERANCE",
+_NAMES: dict[type[tree.Node], str] = {
+    tree.RobotBinding: "ROBOT",
+    tree.StandardChannel: "STANDARD_IN and STANDARD_OUT",
+    tree.ObstacleStart: "OBSTACLE",
+    tree.ObstacleEnd: "OBSTACLEEND",
+    tree.WithTolerance: "WITH TOLERANCE",
 }
+"""Parts that are read only, and what a program calls them."""
 
 
 def part_name(node: tree.Node) -> str:
     """What a program calls a part: its keywords."""
-    return _NAMES.get(type(node).__name__, type(node).__name__)
+    return _NAMES.get(type(node), type(node).__name__)
 
 
 def missing_in_move(move: tree.Move) -> tuple[tree.Node, str] | None:
@@ -105,43 +79,50 @@ def missing_in_move(move: tree.Move) -> tuple[tree.Node, str] | None:
 
 
 def unsupported(
-    program: tree.Program, source: SourceText, lists: Sequence[ImportedList] = ()
+    program: tree.Program,
+    source: SourceText,
+    lists: Sequence[ImportedList] = (),
+    modules: Sequence[ImportedModule] = (),
 ) -> list[Diagnostic]:
-    """A warning, IRL591, for every part of a program and its data lists that a run would stop at.
+    """A warning, IRL591, for every part of a program, its data lists and modules that a run would stop at.
 
     IRL363 for criteria outside the library, at which it stops unless they are registered by then.
     """
+    found = _of_text(program, source, lists)
+    for module in modules:
+        found += _of_text(module.tree, module.source, module.data_lists)
+    return found
+
+
+def _of_text(
+    root: tree.Program | tree.Module, source: SourceText, lists: Sequence[ImportedList]
+) -> list[Diagnostic]:
     values = [part for data_list in lists for part in data_list.tree.declarations]
-    declared = frozenset(symbol.name.key for symbol in declared_symbols([*program.declarations, *values]))
-    found: list[tuple[tree.Node, str]] = []
-    for declaration in program.declarations:
-        if isinstance(declaration, _DECLARATIONS):
-            found += _parts(declaration, declared)
-        else:
-            found.append((declaration, part_name(declaration)))
-    for statement in program.body:
-        if not isinstance(statement, _STATEMENTS):
-            found.append((statement, part_name(statement)))
-            continue
-        missing = missing_in_move(statement) if isinstance(statement, tree.Move) else None
-        if missing is not None:
-            found.append(missing)
-        found += _parts(statement, declared)
-    warnings = [_unexecuted(source, node, what) for node, what in found]
+    declared = frozenset(_declared([*root.declarations, *values]))
+    warnings = [_unexecuted(source, *missing) for missing in _parts(root, declared)]
     for data_list in lists:
         for part in data_list.tree.declarations:
             warnings += [_unexecuted(data_list.source, *missing) for missing in _parts(part, declared)]
-    return [*warnings, *_unknown_criteria(program, source)]
+    return [*warnings, *_unknown_criteria(root, source)]
+
+
+def _declared(declarations: Sequence[tree.Declaration]) -> Iterator[str]:
+    """Casefolded names of everything that is declared, local names of routines included."""
+    yield from (symbol.name.key for symbol in declared_symbols(declarations))
+    for part in declarations:
+        if isinstance(part, tree.ProcedureDeclaration | tree.FunctionDeclaration):
+            yield from (symbol.name.key for symbol in parameter_symbols(part))
+            yield from _declared(part.declarations)
 
 
 def _unexecuted(source: SourceText, node: tree.Node, what: str) -> Diagnostic:
     return report("IRL591", Place.in_text(source, node.span), what=what)
 
 
-def _unknown_criteria(program: tree.Program, source: SourceText) -> Iterator[Diagnostic]:
+def _unknown_criteria(root: tree.Node, source: SourceText) -> Iterator[Diagnostic]:
     """A warning at the first place of every criterion that is none of the library."""
     told: set[str] = set()
-    for node in tree.walk(program):
+    for node in tree.walk(root):
         if not isinstance(node, tree.CriterionStart | tree.WithCriterion):
             continue
         name = criterion_name(node.name)
@@ -152,24 +133,25 @@ def _unknown_criteria(program: tree.Program, source: SourceText) -> Iterator[Dia
 
 
 def _parts(root: tree.Node, declared: frozenset[str]) -> Iterator[tuple[tree.Node, str]]:
-    """Parts that are not executed in a declaration or statement of the executed kinds, and their names."""
+    """Parts that are not executed in a text, and their names."""
     for node in tree.walk(root):
         match node:
-            case tree.FunctionCall(name=name) if name.key in (_READ_ONLY_FUNCTIONS | declared):
-                yield node, f"the function {name.name}"
-            case tree.FunctionCall(name=name, arguments=arguments) if name.key == POSTURE:
-                in_declaration = isinstance(root, _DECLARATIONS)
-                missing = missing_in_posture(len(arguments), in_declaration=in_declaration)
-                if missing:
-                    yield node, missing
+            case tree.Move():
+                missing = missing_in_move(node)
+                if missing is not None:
+                    yield missing
+            case tree.Call(name=name) if name.key in builtins.PROCEDURES and name.key not in declared:
+                yield node, f"the procedure {name.name}"
+            case tree.FunctionCall(name=name, arguments=arguments) if name.key not in declared:
+                if name.key in _READ_ONLY_FUNCTIONS:
+                    yield node, f"the function {name.name}"
+                elif name.key == "posture" and len(arguments) == 2:
+                    yield node, "the function POSTURE with an obstacle"
             case tree.NamedType(name=name) if name.key in LATER_TYPES - declared:
                 yield node, f"the type {name.name}"
             case tree.Designator(base=name) if name.key not in _EXECUTED_NAMES | declared:
                 what = system_name(name)
                 if what:
                     yield name, what
-
-
-def reads_actual(node: tree.Node) -> bool:
-    """Whether a statement reads R_JOINT_ACT, the posture of the robot at that moment."""
-    return any(isinstance(part, tree.Designator) and part.base.key == _ACTUAL for part in tree.walk(node))
+            case _ if type(node) in _NAMES and not isinstance(node, tree.WithTolerance):
+                yield node, part_name(node)

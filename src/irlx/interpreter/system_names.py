@@ -1,16 +1,14 @@
-"""Names that the language has and this version does not execute: system variables, ports, types."""
+"""Names that the language has and this version does not execute: system variables and types."""
 
 from __future__ import annotations
 
 from irlx.language import tree
-from irlx.language.builtins import SYSTEM_VARIABLES, is_port_name
+from irlx.language.builtins import SYSTEM_VARIABLES
 
-LATER_TYPES = frozenset({"char", "character", "file", "semaphore", "signal", "robtarget"})
+LATER_TYPES = frozenset({"file", "semaphore", "signal"})
 """Predefined types that are read only, by casefolded name."""
 
 
 def system_name(name: tree.Name) -> str:
     """What a name without a variable is in the language, for messages, or '' where it is nothing."""
-    if name.key in SYSTEM_VARIABLES:
-        return f"the system variable {name.name}"
-    return f"the port {name.name}" if is_port_name(name.key) else ""
+    return f"the system variable {name.name}" if name.key in SYSTEM_VARIABLES else ""

@@ -6,9 +6,9 @@ from pathlib import PurePath
 
 from irlx.blocks import Origin, PoseTarget
 from irlx.diagnostics import SourceText
-from irlx.interpreter.functions import parts_of, vector_of
+from irlx.interpreter.functions import parts_of, pose, vector_of
 from irlx.interpreter.quaternion import Vector
-from irlx.interpreter.types import POSITION
+from irlx.interpreter.types import POSE, POSITION
 from irlx.interpreter.values import RecordValue
 from irlx.language import tree
 
@@ -20,11 +20,23 @@ def origin_of(source: SourceText, node: tree.Node, last: tree.Node | None = None
 
 
 def pose_target(value: RecordValue) -> PoseTarget:
-    """Target of a POSE (mm, quaternion scalar first), or of a POSITION, which keeps the orientation."""
+    """Target of a POSE (mm, quaternion scalar first), or of a POSITION, which keeps the orientation.
+
+    That of a ROBTARGET is its pose.
+    """
     if value.type == POSITION:
         return PoseTarget(_metres(vector_of(value)), None)
+    first = value.values[0]
+    if isinstance(first, RecordValue) and first.type == POSE:
+        value = first
     at, (w, x, y, z) = parts_of(value)
     return PoseTarget(_metres(at), (x, y, z, w))
+
+
+def pose_of_answer(answer: tuple[float, ...]) -> RecordValue:
+    """POSE (mm) of a position, m, and a quaternion x, y, z, w."""
+    x, y, z, qx, qy, qz, qw = answer
+    return pose((x * 1e3, y * 1e3, z * 1e3), (qw, qx, qy, qz))
 
 
 def _metres(vector: Vector) -> Vector:

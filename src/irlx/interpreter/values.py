@@ -1,11 +1,15 @@
-"""Values of a running program: Python's own for simple types, immutable structures for the others.
+"""Values of a running program: Python's own for simple types, structures for the others.
 
-Values never change in place, so assignment copies without copying: value semantics for free.
+Records never change in place. Arrays do, as long as only one variable has them: whoever reads one as a
+whole marks it as shared, and a shared one is copied before it changes. Assignment copies without
+copying: value semantics for free.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cache
 from typing import TypeAlias
 
 from irlx.interpreter.types import Array, Record, Simple, Type
@@ -37,31 +41,82 @@ class RecordValue:
         return tuple(float(value) for value in self.values if isinstance(value, int | float))
 
 
-@dataclass(frozen=True)
+@dataclass
 class ArrayValue:
-    """Elements of an array, the last index running fastest."""
+    """Elements of an array, the last index running fastest; `shared` ones must not change any more."""
 
     type: Array
-    values: tuple[Value, ...]
+    values: list[Value]
+    shared: bool = field(default=False, compare=False)
+
+    def unshared(self) -> ArrayValue:
+        """This array where it may change, else a copy that may."""
+        if not self.shared:
+            return self
+        if has_arrays(self.type.element):
+            for value in self.values:
+                share(value)
+        return ArrayValue(self.type, self.values.copy())
 
 
 Value: TypeAlias = bool | int | float | str | RecordValue | ArrayValue | Unset
 
 
+@cache
+def has_arrays(type: Type) -> bool:
+    """Whether values of a type are arrays or hold some."""
+    if isinstance(type, Record):
+        return any(has_arrays(part) for _, part in type.fields)
+    return isinstance(type, Array)
+
+
+@cache
+def leaves(type: Type) -> int:
+    """Number of simple values that a value of a type holds."""
+    if isinstance(type, Record):
+        return sum(leaves(part) for _, part in type.fields)
+    return type.size * max(leaves(type.element), 1) if isinstance(type, Array) else 1
+
+
+def share(value: Value) -> None:
+    """Mark the arrays of a value: whoever has it may rely on it from now on."""
+    if isinstance(value, ArrayValue):
+        value.shared = True
+    elif isinstance(value, RecordValue):
+        for part, (_, type) in zip(value.values, value.type.fields, strict=True):
+            if not isinstance(type, Simple):
+                share(part)
+
+
+def replaced(value: Value, steps: Sequence[int], new: Value) -> Value:
+    """The value with the part at `steps` replaced; arrays that may change do so in place."""
+    if not steps:
+        return new
+    if isinstance(value, ArrayValue):
+        array = value.unshared()
+        array.values[steps[0]] = replaced(array.values[steps[0]], steps[1:], new)
+        return array
+    if not isinstance(value, RecordValue):
+        raise TypeError("only structures have parts")
+    at = steps[0]
+    part = replaced(value.values[at], steps[1:], new)
+    return RecordValue(value.type, (*value.values[:at], part, *value.values[at + 1 :]))
+
+
 def unset_value(type: Type) -> Value:
-    """Value of a fresh variable: structures exist, their leaves are unset."""
+    """Value of a fresh variable: structures exist, their leaves are unset; its arrays are shared."""
     if isinstance(type, Simple):
         return UNSET
     if isinstance(type, Record):
-        return RecordValue(type, tuple(unset_value(field) for _, field in type.fields))
-    return ArrayValue(type, (unset_value(type.element),) * type.size)
+        return RecordValue(type, tuple(unset_value(part) for _, part in type.fields))
+    return ArrayValue(type, [unset_value(type.element)] * type.size, shared=True)
 
 
 def is_set(value: Value) -> bool:
     """Whether a value, and every part of it, has been assigned."""
     if isinstance(value, RecordValue | ArrayValue):
-        return all(is_set(part) for part in value.values)
-    return not isinstance(value, Unset)
+        return all(map(is_set, value.values))
+    return value is not UNSET
 
 
 def unset_part(value: Value) -> str:
@@ -87,20 +142,3 @@ def _selector(type: Record | Array, position: int) -> str:
         position, offset = divmod(position, high - low + 1)
         indices.append(str(low + offset))
     return f"[{', '.join(reversed(indices))}]"
-
-
-def is_of_type(value: Value, type: Type) -> bool:
-    """Whether a value is of a type as it stands, without conversion."""
-    if isinstance(value, RecordValue | ArrayValue):
-        return value.type == type
-    return isinstance(type, Simple) and type_name(value) == type.name
-
-
-def type_name(value: Value) -> str:
-    """Name of a value's type as messages give it."""
-    if isinstance(value, RecordValue | ArrayValue):
-        return value.type.name
-    if isinstance(value, Unset):
-        return "no value"
-    names = {bool: "BOOL", int: "INT", float: "REAL", str: "STRING"}
-    return names[type(value)]

@@ -8,14 +8,17 @@ from types import MappingProxyType
 from typing import TypeAlias
 
 from irlx.diagnostics import Diagnostic, Place, SourceText, Span, report
-from irlx.diagnostics.diagnostic import near_matches
 from irlx.language import tree
+from irlx.language.checking import check_types
+from irlx.language.checking.consequences import standing_alone
 from irlx.language.criteria import check_criterion
 from irlx.language.data_lists import DataListResolver, ImportedList, imports_of, in_order
+from irlx.language.lints import lints_of
+from irlx.language.modules import ImportedModule, ModuleProblem, exported, missing_exports, no_module
 from irlx.language.moves import check_move
 from irlx.language.names import check_names
 from irlx.language.parser import parse
-from irlx.language.scope import Scope
+from irlx.language.references import Reference, RoutineScope
 from irlx.language.suppression import Ignore, after_ignoring
 from irlx.language.switches import check_freeze, check_switches
 from irlx.language.symbols import Symbol
@@ -25,10 +28,13 @@ __all__ = ["Analysis", "CellNames", "DataListResolver", "Resolver", "analyse"]
 _Root: TypeAlias = "tree.Program | tree.Module | tree.DataList"
 
 Resolver: TypeAlias = "Callable[[str], Analysis | None]"
-"""Gives the analysis of a module by the name that FROM uses, or None where there is no such module."""
+"""Gives the analysis of a module by the name that FROM uses, or None where there is no such module.
 
-CellNames: TypeAlias = "Callable[[tree.Program], Collection[str]]"
-"""Gives the names that the cell of a program adds to it, those of its frames."""
+Raises ModuleProblem for one that cannot be used.
+"""
+
+CellNames: TypeAlias = "Callable[[tree.Program | tree.Module], Collection[str]]"
+"""Gives the names that the cell of a program adds to it and its modules, those of its frames."""
 
 
 @dataclass(frozen=True)
@@ -37,8 +43,10 @@ class Analysis:
 
     `tree` is partial after a mistake and None where nothing is left; `symbols` are the program's own
     declarations by casefolded name, `types` the types among them; `comments` are in the order of the text.
-    `data_lists` are those that it imports, in order, as far as they could be read. `ignores` are what
-    comments ask to ignore and only a later stage can find.
+    Both carry their types. `references` are all uses of declared names in the order of the text, without
+    those in data lists; `routines` are the names that procedures and functions declare. `data_lists` are
+    those that it imports, in order, as far as they could be read; `modules` all that it needs, each behind
+    those that it imports itself. `ignores` are what comments ask to ignore and only a later stage can find.
     """
 
     source: SourceText
@@ -49,6 +57,9 @@ class Analysis:
     types: Mapping[str, Symbol] = field(default_factory=dict)
     data_lists: tuple[ImportedList, ...] = ()
     ignores: tuple[Ignore, ...] = ()
+    modules: tuple[ImportedModule, ...] = ()
+    references: tuple[Reference, ...] = ()
+    routines: tuple[RoutineScope, ...] = ()
 
     @property
     def has_errors(self) -> bool:
@@ -61,34 +72,56 @@ def analyse(
     resolver: Resolver | None = None,
     cell_names: CellNames | None = None,
     data_lists: DataListResolver | None = None,
+    *,
+    joints: tuple[str, ...] = (),
+    lints: bool = False,
 ) -> Analysis:
     """Parse and check a text; never raises for what a text may hold.
 
     Without a `resolver` imported names are taken as declared and modules are not looked at. What
     `cell_names` gives counts as constants of the program, which its own declarations may hide.
     `data_lists` gives the texts of data lists; without it, one that is imported may hold any name.
+    `joints` are those of the robot where it is known, and with `lints` there are warnings of what is allowed
+    but seldom meant.
     """
     parsed = parse(source)
     if parsed.tree is None:
         return Analysis(source, None, in_order(parsed.findings, source, ()), parsed.comments)
-    given = cell_names(parsed.tree) if cell_names and isinstance(parsed.tree, tree.Program) else ()
+    given = (
+        cell_names(parsed.tree) if cell_names and isinstance(parsed.tree, tree.Program | tree.Module) else ()
+    )
     imports = imports_of(parsed.tree, source, data_lists)
     scope, findings = check_names(parsed.tree, source, given, imports, complete=parsed.complete)
     findings += _static_findings(parsed.tree, source)
-    if resolver is not None:
-        findings += _import_findings(parsed.tree, scope, resolver)
+    modules, on_imports = _imported(parsed.tree, source, resolver)
+    typed = check_types(
+        parsed.tree,
+        source,
+        imports.lists,
+        given,
+        joints,
+        modules,
+        complete=parsed.complete and imports.whole,
+    )
+    findings += standing_alone(typed.findings, (*parsed.findings, *imports.findings))
+    if lints and parsed.complete:
+        findings += lints_of(parsed.tree, source, typed)
+    findings += on_imports
     if parsed.complete and isinstance(parsed.tree, tree.Program):
         findings += check_switches(parsed.tree, source)
-    told, later = after_ignoring((*parsed.findings, *imports.findings, *findings), source, parsed, imports)
+    found = (*parsed.findings, *imports.findings, *findings)
+    told, later = after_ignoring(found, source, parsed, imports, linted=lints)
     return Analysis(
         source,
         parsed.tree,
         in_order(told, source, imports.lists),
         parsed.comments,
-        MappingProxyType(scope.values),
-        MappingProxyType(scope.types),
+        MappingProxyType({**scope.values, **typed.symbols}),
+        MappingProxyType({**scope.types, **typed.types}),
         imports.lists,
-        later,
+        ignores=later,
+        references=typed.references,
+        routines=typed.routines,
     )
 
 
@@ -104,29 +137,30 @@ def _static_findings(root: tree.Node, source: SourceText) -> list[Diagnostic]:
     return findings
 
 
-def _import_findings(root: _Root, scope: Scope, resolver: Resolver) -> list[Diagnostic]:
-    findings = []
+def _imported(
+    root: _Root, source: SourceText, resolver: Resolver | None
+) -> tuple[dict[str, Mapping[str, Symbol]], list[Diagnostic]]:
+    """What the modules of a text export, by casefolded names, and the findings on its imports."""
+    modules: dict[str, Mapping[str, Symbol]] = {}
+    findings: list[Diagnostic] = []
+    if resolver is None:
+        return modules, findings
     for declaration in root.declarations:
         if not isinstance(declaration, tree.ImportFrom) or not declaration.module.key:
             continue
-        module = resolver(declaration.module.name)
+        place = Place.in_text(source, declaration.module.span)
+        try:
+            module = resolver(declaration.module.name)
+        except ModuleProblem as problem:
+            findings.append(report(problem.code, place, **problem.data))
+            continue
         if module is None:
-            place = Place.in_text(scope.source, declaration.module.span)
             findings.append(report("IRL218", place, module=declaration.module.name))
-        elif isinstance(module.tree, tree.Module):
-            findings += _missing_exports(declaration, module, module.tree, scope.source)
-    return findings
-
-
-def _missing_exports(
-    declaration: tree.ImportFrom, module: Analysis, root: tree.Module, source: SourceText
-) -> list[Diagnostic]:
-    exports = [name for d in root.declarations if isinstance(d, tree.Export) for name in d.names]
-    keys = {name.key for name in exports}
-    findings = []
-    for name in declaration.names:
-        if name.key not in keys:
-            near = near_matches(name.name, [export.name for export in exports])
-            place = Place.in_text(source, name.span)
-            findings.append(report("IRL219", place, name=name.name, file=module.source.name, near=near))
-    return findings
+            continue
+        findings += no_module(declaration, module.source, module.tree, source)
+        if isinstance(module.tree, tree.Module):
+            findings += missing_exports(declaration, module.tree, module.source.name, source)
+            known = {**module.types, **module.symbols}
+            names = {name.key for name in exported(module.tree)}
+            modules[declaration.module.key] = {key: known[key] for key in names & known.keys()}
+    return modules, findings

@@ -22,7 +22,7 @@ DataListResolver: TypeAlias = Callable[[str, Place], SourceText]
 Raises IrlxError where there is none; its diagnostics become findings as they are.
 """
 
-_ASKS_THE_ROBOT = "posture"
+_ASKS_THE_ROBOT = frozenset({"posture", "fk", "ik", "manipulability"})
 
 
 @dataclass(frozen=True)
@@ -195,7 +195,7 @@ class _ValueCheck:
         return words.get(symbol.kind, f"a {symbol.kind} of the program")
 
     def _function(self, name: tree.Name) -> None:
-        if name.key == _ASKS_THE_ROBOT:
+        if name.key in _ASKS_THE_ROBOT:
             self._once("IRL245", name, what="which asks the robot")
         elif name.key in FUNCTIONS or name.key in TYPES or self._scope.type(name.key) is not None:
             return

@@ -20,6 +20,8 @@ _COMMENT = re.compile(
 )
 _FOUND_LATER = frozenset({"IRL363", "IRL591"})
 """Codes that only a look at what can be executed gives."""
+_BY_LINTS = frozenset({"IRL281", "IRL282", "IRL283", "IRL284", "IRL285", "IRL286", "IRL287", "IRL310", "IRL311"})
+"""Codes that only a check looks for, and a run does not."""
 _OF_IMPORTED_LISTS = frozenset({"IRL243"})
 """Codes of a data list that only a program that imports it gives."""
 _WORD = re.compile(r"[^\s,]+")
@@ -73,13 +75,13 @@ def without_ignored(
 
 
 def after_ignoring(
-    findings: Sequence[Diagnostic], source: SourceText, parsed: Parse, imports: Imports
+    findings: Sequence[Diagnostic], source: SourceText, parsed: Parse, imports: Imports, *, linted: bool
 ) -> tuple[list[Diagnostic], tuple[Ignore, ...]]:
     """Findings of the analysis of a text after its comments had their say, those on the comments included.
 
     Also gives what is asked for that only a later stage finds. What is missing in an incomplete tree proves
     nothing, so nothing counts as unused there. In imported lists comments only ignore: what they have to
-    say of a list depends on who imports it.
+    say of a list depends on who imports it. `linted` tells whether lints were looked for.
     """
     own = read_ignores(source, parsed.comments)
     lists = [one for found in imports.lists for one in read_ignores(found.source, _comments(found)).asked]
@@ -87,7 +89,11 @@ def after_ignoring(
     kept += own.findings
     mine = [one for one in unused if one.place.text is source]
     if parsed.complete:
-        known_later = {*_FOUND_LATER, *(_OF_IMPORTED_LISTS if isinstance(parsed.tree, DataList) else ())}
+        known_later = {
+            *_FOUND_LATER,
+            *(_OF_IMPORTED_LISTS if isinstance(parsed.tree, DataList) else ()),
+            *(() if linted else _BY_LINTS),
+        }
         kept += [unused_finding(one) for one in mine if one.code not in known_later]
     return kept, tuple(one for one in unused if one.code in _FOUND_LATER)
 

@@ -8,6 +8,7 @@ from typing import Literal, TypeAlias
 
 from irlx.diagnostics import SourceText
 from irlx.language import tree
+from irlx.language.types import Signature, Type
 
 __all__ = ["Routine", "Symbol", "SymbolKind", "declared_symbols", "label_names", "parameter_symbols"]
 
@@ -30,13 +31,16 @@ Routine: TypeAlias = "tree.ProcedureDeclaration | tree.FunctionDeclaration"
 class Symbol:
     """A declared name: how it is spelt where declared, what it is, and the node that declares it.
 
-    `source` is the text that declares it where that is not the program's own: a data list.
+    `source` is the text that declares it where that is not the program's own: a data list. The check of types
+    adds `type`, of a function that of its result, and the `signature` of routines.
     """
 
     name: tree.Name
     kind: SymbolKind
     declaration: tree.Node
     source: SourceText | None = None
+    type: Type | None = None
+    signature: Signature | None = None
 
 
 def declared_symbols(declarations: Iterable[tree.Declaration]) -> Iterator[Symbol]:

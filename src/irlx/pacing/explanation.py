@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.blocks import MoveBlock
+from irlx.blocks import MoveBlock, WaitBlock
 from irlx.pacing.demand import Demand
 from irlx.pacing.rows import MotionRows, PathPart
 from irlx.robot.kinematics import Kinematics
@@ -139,7 +139,7 @@ def explain_tick(
         tick,
         tick * dt,
         rows.block.origin.line,
-        f"MOVE {rows.block.kind.value}" if isinstance(rows.block, MoveBlock) else "RECONFIGURATION",
+        _motion(rows),
         _way_of_pacing(rows, row),
         _path_tick(rows.path, demand, rows.length) if rows.path is not None and demand is not None else None,
         (float(rows.path_position_error[row]), float(rows.path_orientation_error[row])),
@@ -174,7 +174,16 @@ def _chosen(path: PathPart, row: int, demand: Demand) -> Criterion:
     return path.term.at(demand.s, demand.s - (path.demands[row - 1].s if row > 0 else 0.0))
 
 
+def _motion(rows: MotionRows) -> str:
+    """The motion in the program's words."""
+    if isinstance(rows.block, MoveBlock):
+        return f"MOVE {rows.block.kind.value}"
+    return "WAIT" if isinstance(rows.block, WaitBlock) else "RECONFIGURATION"
+
+
 def _way_of_pacing(rows: MotionRows, row: int) -> str:
+    if isinstance(rows.block, WaitBlock):
+        return "the robot stands"
     if row == len(rows) - 1:
         return "hold tick of a stop"
     if rows.path is None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import hypot, inf
 
 import numpy as np
@@ -11,7 +11,12 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from irlx.blocks import (
-    AskPostureOf,
+    AskInput,
+    AskInputChange,
+    AskManipulability,
+    AskNearestPosture,
+    AskPose,
+    AskPosture,
     Block,
     CriterionBlock,
     FreezeBlock,
@@ -23,12 +28,14 @@ from irlx.blocks import (
     PoseTarget,
     Question,
     ReconfigureBlock,
+    WaitBlock,
 )
 from irlx.diagnostics import Diagnostic, Place, report
 from irlx.motion.arc import Arc
 from irlx.motion.plan_joint_line import plan_joint_line
 from irlx.motion.plan_path import PlannedPath, plan_path
 from irlx.motion.whole_ticks import ticks_of_move
+from irlx.pacing.answers import answer_of_posture
 from irlx.pacing.clock import programmed_clock
 from irlx.pacing.conditions import broken_condition, check_can_move, check_conditions, check_targets
 from irlx.pacing.demand import Demand, DemandModifier
@@ -41,6 +48,7 @@ from irlx.pacing.impossible import (
     joint_value,
     slower_than_allowed,
 )
+from irlx.pacing.inputs import Inputs, answer_of_inputs
 from irlx.pacing.options import LimitsInForce, Options, SwitchBlock, limits_in_force
 from irlx.pacing.path_motion import Failure, PacedPath, PathMotion, pace_path
 from irlx.pacing.posed import posed
@@ -60,6 +68,7 @@ from irlx.pacing.rows import MotionRows, PathPart
 from irlx.pacing.slowdown.model import Model
 from irlx.pacing.snap import SAME_VALUE, snapped
 from irlx.pacing.switches import check_freeze, check_inside, check_joint_target, check_limit
+from irlx.pacing.waiting import waited
 from irlx.promises import PATH_ORIENTATION, PATH_POSITION
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
@@ -82,7 +91,7 @@ _TURN_RULES = 1e3
 class PacingSetup:
     """The robot as a run finds it: model, own limits, weights (n,), start posture (n,), tick in s.
 
-    A move may take `max_slow` times as long as programmed, and a tick.
+    A move may take `max_slow` times as long as programmed, and a tick; `inputs` are what the world says.
     """
 
     kinematics: Kinematics
@@ -92,6 +101,7 @@ class PacingSetup:
     dt: float
     modifiers: Sequence[DemandModifier] = ()
     max_slow: float = inf
+    inputs: Inputs = field(default_factory=Inputs)
 
 
 class Pacer:
@@ -113,11 +123,17 @@ class Pacer:
 
         Raises PacingError, IRL522, for the posture of a pose that none reaches.
         """
-        if isinstance(question, AskPostureOf):
-            in_force = limits_in_force(self._setup.limits, self.options)
-            target = PoseTarget(question.position, question.orientation)
-            return tuple(self._posture_of(target, None, in_force, self._locate(question.origin)).tolist())
-        return tuple(float(value) for value in self.q)
+        if isinstance(question, AskPosture):
+            return tuple(float(value) for value in self.q)
+        if isinstance(question, AskInput | AskInputChange):
+            setup = self._setup
+            return answer_of_inputs(question, setup.inputs, self.tick * setup.dt, setup.dt, self._locate)
+        if isinstance(question, AskPose | AskManipulability):
+            return answer_of_posture(question, self._setup.kinematics)
+        in_force = limits_in_force(self._setup.limits, self.options)
+        target, place = PoseTarget(question.position, question.orientation), self._locate(question.origin)
+        near = np.array(question.near) if isinstance(question, AskNearestPosture) else None
+        return tuple(self._posture_of(target, near, in_force, place).tolist())
 
     def settled(self, block: Block) -> Block:
         """The block as it is executed here: bounds that mean the present posture lie exactly on it."""
@@ -133,6 +149,8 @@ class Pacer:
         if isinstance(block, ReconfigureBlock):
             return self._reconfigure(block)
         place = self._locate(block.origin)
+        if isinstance(block, WaitBlock):
+            return self._wait(block, place)
         if isinstance(block, LimitSwitchBlock):
             self.warnings += check_limit(block, self._robot, self._setup.limits, self.q, place)
         if isinstance(block, FreezeBlock):
@@ -164,6 +182,11 @@ class Pacer:
         self.q = rows.q[-1]
         self.tick += len(rows)
         return replace(rows, limits=in_force.limits)
+
+    def _wait(self, block: WaitBlock, place: Place) -> MotionRows | None:
+        setup = self._setup
+        rows = waited(block, self.q, setup.dt, self.tick + 1, setup.kinematics, place)
+        return self._moved(rows, limits_in_force(setup.limits, self.options))
 
     # ---- RECONFIGURATION
 
@@ -363,12 +386,14 @@ class Pacer:
         """Posture at which a PTP ends: as given, or the nearest one that reaches the pose."""
         if isinstance(block.target, JointTarget):
             return np.array(block.target.values)
-        return self._posture_of(block.target, block.reconfiguration, in_force, place)
+        konf = block.reconfiguration
+        near = None if konf is None else self._konf(konf, in_force, place)
+        return self._posture_of(block.target, near, in_force, place)
 
     def _posture_of(
-        self, target: PoseTarget, konf: JointTarget | None, in_force: LimitsInForce, place: Place
+        self, target: PoseTarget, near: Array | None, in_force: LimitsInForce, place: Place
     ) -> Array:
-        """The posture of a pose nearest to `konf`, else to that of CYCLICSTART, else to the present one."""
+        """The posture of a pose nearest to `near` (n,), else to CYCLICSTART's, else to the present one."""
         check_can_move(target, self._setup.kinematics, self.q, place)
         rotation, _ = self._setup.kinematics.tool_pose(self.q)
         if target.orientation is not None:
@@ -379,8 +404,8 @@ class Pacer:
             raise PacingError(report("IRL522", place, distance=f"{farthest * 1000.0:.6g}", angle="0"))
         free = self.options.free_joints(self.q.size)
         drawn_to = self.options.cyclic_posture if self.options.cyclic_posture is not None else self.q
-        if konf is not None:
-            drawn_to = self._konf(konf, in_force, place)
+        if near is not None:
+            drawn_to = near
         start = np.where(free, drawn_to, self.q)
         search = nearest_posture(
             self._setup.kinematics,

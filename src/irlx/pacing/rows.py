@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.blocks import MoveBlock, ReconfigureBlock
+from irlx.blocks import MoveBlock, ReconfigureBlock, WaitBlock
 from irlx.motion.trapezoid import Trapezoid
 from irlx.pacing.demand import Demand
 from irlx.pacing.posture_term import PostureTerm
@@ -39,7 +39,7 @@ class PathPart:
 
 @dataclass(frozen=True)
 class MotionRows:
-    """What a move or reconfiguration becomes: rows at consecutive ticks, the last a hold of the one before.
+    """What a move, reconfiguration or wait becomes: rows at consecutive ticks, the last one a hold.
 
     `q` (N, n) rad or m; `tool_position` (N, 3) m and `tool_rotation` (N, 3, 3) of the tool in the
     world; `path_position_error` (N,) m and `path_orientation_error` (N,) rad against the demanded
@@ -48,7 +48,7 @@ class MotionRows:
     `limits` in force, None for the robot's own; `path`, None where no path was asked for.
     """
 
-    block: MoveBlock | ReconfigureBlock
+    block: MoveBlock | ReconfigureBlock | WaitBlock
     first_tick: int
     q: Array
     tool_position: Array

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from irlx.diagnostics import Diagnostic, IrlxError
 from irlx.pacing.explanation import TickExplanation
 from irlx.report.events import LimitActive, Slowed
+from irlx.report.signals import Signal, signals_of
 from irlx.report.summary import Summary
 from irlx.streams.formats import write_stream
 from irlx.streams.joint_stream import JointStream
@@ -63,6 +64,11 @@ class Run:
     def block(self) -> NDArray[np.int64]:
         """Id of the move block in execution, 0 before the first."""
         return self.stream.block
+
+    @property
+    def signals(self) -> tuple[Signal, ...]:
+        """Outputs set and inputs read, in the order of time."""
+        return signals_of(self.stream.records, self.stream.dt)
 
     @property
     def joint_names(self) -> tuple[str, ...]:

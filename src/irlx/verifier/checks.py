@@ -23,7 +23,7 @@ from irlx.verifier.judges.joint_moves import JointMoveChecks
 from irlx.verifier.judges.limits_kept import LimitChecks, StartCheck
 from irlx.verifier.judges.provenance import RateChecks, Reference, ToolChecks, check_robot, check_robot_limits
 from irlx.verifier.judges.reconfigurations import ReconfigurationChecks
-from irlx.verifier.judges.stillness import FrozenChecks, StopChecks
+from irlx.verifier.judges.stillness import FrozenChecks, StopChecks, WaitChecks
 from irlx.verifier.judges.tool_moves import ToolMoveChecks
 from irlx.verifier.moves import check_blocks
 from irlx.verifier.outline import Outline, Scans, check_complete, check_finite, check_ticks, outline_of
@@ -47,6 +47,8 @@ CHECKS = (
     "speed limits",
     "acceleration limits",
     "stops",
+    "waits still",
+    "waiting time",
     "frozen joints",
     "constraints",
     "PTP straight",
@@ -72,9 +74,9 @@ CHECKS = (
 _ANYWAY = ("written rates", "start", "stops")
 _LIMITS = CHECKS[10:13]
 _OF_CELL = ("constraints",)
-_BLOCKS = ("frozen joints", "PTP straight", "PTP progress", "joint goal")
-_TOOL = CHECKS[19:21]
-_MOVES = CHECKS[21:]
+_BLOCKS = ("waits still", "waiting time", "frozen joints", "PTP straight", "PTP progress", "joint goal")
+_TOOL = CHECKS[21:23]
+_MOVES = CHECKS[23:]
 
 _HEADER_DAMAGE = ("IRL701", "IRL705", "IRL706")
 
@@ -171,7 +173,7 @@ def _judged(
         (_ANYWAY, "", [RateChecks, StartCheck, StopChecks]),
         (_LIMITS, no_blocks if of_blocks.status == FAILED else "", [LimitChecks]),
         (_OF_CELL, no_robot, [ConditionChecks]),
-        (_BLOCKS, no_blocks, [FrozenChecks, JointMoveChecks]),
+        (_BLOCKS, no_blocks, [WaitChecks, FrozenChecks, JointMoveChecks]),
         (_TOOL, no_robot, [ToolChecks]),
         (_MOVES, no_blocks or no_robot, [ToolMoveChecks, ReconfigurationChecks, ClosureChecks]),
     ]

@@ -9,6 +9,7 @@ import numpy as np
 from irlx.blocks import (
     Block,
     FreezeBlock,
+    InputBlock,
     JointRange,
     JointTarget,
     LimitSwitchBlock,
@@ -16,6 +17,9 @@ from irlx.blocks import (
     MoveKind,
     PoseTarget,
     ReconfigureBlock,
+    SignalBlock,
+    SignalKind,
+    WaitBlock,
 )
 from irlx.promises import UNIT_LENGTH
 from irlx.streams.joint_stream import Integers
@@ -81,7 +85,7 @@ def _misfit(outline: Outline) -> tuple[int, str] | None:
             return record.tick, f"block {block.id}: {reason}"
         if block.id != due:
             return record.tick, f"block {block.id} stands where {due} is due: one is missing or added"
-        moves = isinstance(block, MoveBlock | ReconfigureBlock)
+        moves = isinstance(block, MoveBlock | ReconfigureBlock | WaitBlock)
         begins[block.id] = record.tick if moves else -1
         if record.tick != standing:
             late = f" (the samples end at {rows - 1})" if record.tick >= rows else ""
@@ -123,9 +127,19 @@ def _wrong_numbers(block: Block, joints: int) -> str:
         ranges = [block.range]
     if any(len(bounds.lower) != joints or len(bounds.upper) != joints for bounds in ranges):
         return f"its limits are not those of {joints} joints"
+    if isinstance(block, WaitBlock) and not 0.0 <= block.duration < np.inf:
+        return f"it waits {block.duration} s"
+    if isinstance(block, SignalBlock | InputBlock) and not _fits(block.port.kind, block.value):
+        return f"its {block.port.name} is {block.value}, which is no {block.port.kind.value}"
     if isinstance(block, FreezeBlock) and not all(1 <= joint <= joints for joint in block.joints):
         return f"it freezes a joint outside 1..{joints}"
     return ""
+
+
+def _fits(kind: SignalKind, value: float) -> bool:
+    if kind is SignalKind.BOOL:
+        return value in (0.0, 1.0)
+    return abs(value) < np.inf and (kind is SignalKind.REAL or value == round(value))
 
 
 def _wrong_targets(block: MoveBlock, joints: int) -> str:

@@ -9,11 +9,13 @@ from irlx.diagnostics.codes.cell import CELL
 from irlx.diagnostics.codes.code import Code, Severity
 from irlx.diagnostics.codes.command import COMMAND
 from irlx.diagnostics.codes.data_lists import DATA_LISTS
+from irlx.diagnostics.codes.lints import LINTS
 from irlx.diagnostics.codes.motion import MOTION
 from irlx.diagnostics.codes.names import NAMES
 from irlx.diagnostics.codes.pacing import PACING
 from irlx.diagnostics.codes.redundancy import REDUNDANCY
 from irlx.diagnostics.codes.run import RUN
+from irlx.diagnostics.codes.static_types import STATIC_TYPES
 from irlx.diagnostics.codes.stream import STREAM
 from irlx.diagnostics.codes.syntax import SYNTAX
 from irlx.diagnostics.codes.types import TYPES
@@ -26,6 +28,8 @@ CATALOGUE: Mapping[str, Code] = MappingProxyType(
             SYNTAX,
             NAMES,
             TYPES,
+            STATIC_TYPES,
+            LINTS,
             DATA_LISTS,
             REDUNDANCY,
             MOTION,

@@ -49,6 +49,11 @@ CELL = (
         "irlx.register it before the run, or name its module with --plugin",
     ),
     error(
+        "IRL618",
+        "line {line} of the inputs: expected {expected}, found {found}",
+        "a line for each change: 2.5,IN_3,TRUE below the header time,input,value",
+    ),
+    error(
         "IRL620",
         "{joint} starts at {found} {unit}, outside its limits {lower} to {upper} {unit}",
         "a run can only start inside the limits: change robot.start or robot.limits.position",

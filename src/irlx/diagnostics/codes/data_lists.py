@@ -20,6 +20,12 @@ DATA_LISTS = (
         "write DATALIST {name};",
     ),
     error("IRL244", "the data list '{name}' is imported twice", "remove one of the two"),
+    warning("IRL264", "the value of '{name}' is not written back: {why}"),
+    error(
+        "IRL265",
+        "{path} is not written: the file was changed while the program ran",
+        "run the program again",
+    ),
     error(
         "IRL245",
         "a value of a data list cannot use '{name}', {what}",

@@ -25,5 +25,21 @@ NAMES: tuple[Code, ...] = (
     error("IRL216", "'{name}' is a system variable: assign to it instead of declaring it"),
     error("IRL217", "EXIT outside of a loop", "EXIT leaves FOR, WHILE or REPEAT; HALT ends the program"),
     error("IRL218", "no module '{module}'", "a module NAME is the file NAME.irl beside the program"),
+    error(
+        "IRL260",
+        "module '{module}' is imported in a circle: {files}",
+        "move what both need into a module of its own",
+    ),
+    error("IRL261", "the module '{module}' cannot be read from {path}: {cause}"),
+    error(
+        "IRL262",
+        "expected a module, found {found}",
+        "a module begins with MODULE name; and ends with ENDMODULE",
+    ),
+    warning(
+        "IRL263",
+        "the module is called '{found}' here and '{name}' where it is imported",
+        "write MODULE {name};",
+    ),
     error("IRL219", "{file} does not export '{name}'{near}", "add it to an EXPORT of the module"),
 )

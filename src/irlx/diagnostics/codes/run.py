@@ -16,6 +16,19 @@ RUN = (
     error("IRL505", "{param} must be {expected}, found {value}"),
     error("IRL506", "{function} has no value at {value}"),
     error(
+        "IRL510",
+        "the program has executed {most} statements and goes on; is there a loop without end?",
+        "allow more with --max-steps, or max_steps= in Python",
+    ),
+    error(
+        "IRL511",
+        "{depth} calls wait for each other and their variables hold {values} values; at most {most} calls do",
+        "is there a way out of the recursion?",
+    ),
+    error("IRL512", "a text of {length} characters is too long; at most {most} are kept"),
+    error("IRL513", "this is nested too deeply to be executed", "split it"),
+    error("IRL514", "RETURN {need}"),
+    error(
         "IRL520",
         "the tool cannot follow this move beyond {way} of {length} (tick {tick}) at any speed: {held}; "
         "smallest singular value {sigma}; {missing}",
@@ -49,6 +62,22 @@ RUN = (
         "the joints' limits make this move take {duration} s instead of {programmed} s, {factor} times "
         "as long; {allowed} times is allowed",
         "widen the limits, start from another posture, or allow more (--max-slow)",
+    ),
+    error(
+        "IRL530",
+        "nothing says what the input {name} ({port}) is{near}; inputs known: {known}",
+        "give it a trace in [signals.inputs] of the cell or with --inputs, or a function in Python",
+    ),
+    error("IRL531", "the input {name} is {value} at {time} s, which is no {kind}"),
+    error(
+        "IRL532",
+        "WAIT FOR {condition} can never end: no input that it reads changes any more",
+        "give the input a later change, or the wait a TIMEOUT",
+    ),
+    error(
+        "IRL533",
+        "WAIT FOR {condition} has waited {waited} s, the longest time that a wait without TIMEOUT may take",
+        "give it a TIMEOUT",
     ),
     error(
         "IRL590",

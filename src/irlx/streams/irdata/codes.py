@@ -15,12 +15,16 @@ END = 999
 BLOCK_CODES = {
     "MoveBlock": 300,
     "ReconfigureBlock": 310,
+    "PauseBlock": 380,
     "HaltBlock": 390,
     "LimitSwitchBlock": 410,
     "FreezeBlock": 420,
     "CyclicBlock": 430,
     "CriterionBlock": 440,
+    "SignalBlock": 500,
+    "InputBlock": 510,
+    "WaitBlock": 520,
 }
-"""Code of each kind of function block; signals and waits will take 5xx."""
+"""Code of each kind of function block."""
 
 BLOCK_OF_CODE = {code: name for name, code in BLOCK_CODES.items()}

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.blocks import FreezeBlock
+from irlx.blocks import FreezeBlock, WaitBlock
+from irlx.promises import TICK_SHARE
 from irlx.streams.joint_stream import Floats
 from irlx.verifier.evidence import Evidence
 from irlx.verifier.findings.finding import Check
@@ -41,6 +42,46 @@ class StopChecks:
     def checks(self) -> list[Check]:
         """Stops."""
         return [self._tally.check()]
+
+
+class WaitChecks:
+    """While it waits the robot stands, bit by bit, and as long as told: whole ticks, not one too many."""
+
+    def __init__(self, evidence: Evidence) -> None:
+        outline = evidence.outline
+        self._outline = outline
+        self._still = evidence.tally("waits still", "rad|m")
+        self._time = evidence.tally("waiting time", "s")
+        self._waits = {
+            record.block.id: record.block.duration
+            for record in outline.records
+            if isinstance(record.block, WaitBlock)
+        }
+        lasts = {identity: (first, last) for identity, first, last in outline.segments()}
+        for record in outline.records:
+            if isinstance(record.block, WaitBlock):
+                self._add_time(record.block, record.tick, lasts)
+
+    def _add_time(self, block: WaitBlock, tick: int, lasts: dict[int, tuple[int, int]]) -> None:
+        first, last = lasts.get(block.id, (tick + 1, tick))
+        rows, dt = last - first + 1, self._outline.header.dt
+        unfinished = last == self._outline.rows - 1 and not self._outline.complete
+        # From one tick less than asked for, which is too short, to one more, which is too long.
+        off = block.duration / dt - rows
+        wrong = (off > TICK_SHARE and not unfinished) or off <= TICK_SHARE - 1.0
+        self._time.add(np.array([last]), np.array([off * dt]), dt * TICK_SHARE, np.array([wrong]))
+
+    def take(self, rows: Rows) -> None:
+        """Add a portion."""
+        for stretch in rows.stretches:
+            if stretch.block in self._waits:
+                here, before = (rows.postures[part] for part in (stretch.after, stretch.before))
+                change, offends = np.abs(here - before), _other_bits(here, before)
+                self._still.add(stretch.rows, change, 0.0, offends, np.where(offends, change, -np.inf))
+
+    def checks(self) -> list[Check]:
+        """Waits."""
+        return [self._still.check(), self._time.check()]
 
 
 class FrozenChecks:

@@ -1,0 +1,68 @@
+"""Scripted inputs in a file of their own: CSV with a line for each change."""
+
+from __future__ import annotations
+
+import csv
+import io
+from math import isfinite
+from pathlib import Path
+
+from irlx.cell.errors import CellError
+from irlx.cell.load import read_bytes
+from irlx.diagnostics import Diagnostic, Place, report
+
+HEADER = ["time", "input", "value"]
+_ENTRY = "a time in s, an input, and TRUE, FALSE or a number"
+_WORDS = {"true": 1.0, "false": 0.0}
+
+
+def read_input_file(path: Path) -> dict[str, tuple[tuple[float, float], ...]]:
+    """Traces by casefolded name, of a CSV with the columns time (s), input, value (TRUE, FALSE or a number).
+
+    The times of each input rise. Raises CellError with every fault, IRL618 at its line; IRL001, IRL002 or
+    IRL007 where the file cannot be read.
+    """
+    try:
+        text = read_bytes(path).decode("utf-8-sig")
+    except UnicodeDecodeError as cause:
+        raise CellError(_fault(path, 1, "UTF-8", f"byte {cause.start}")) from cause
+    lines = list(csv.reader(io.StringIO(text)))
+    head = [cell.strip().casefold() for cell in lines[0]] if lines else []
+    if head != HEADER:
+        raise CellError(_fault(path, 1, f"the header {','.join(HEADER)}", ",".join(head) or "nothing"))
+    traces: dict[str, list[tuple[float, float]]] = {}
+    faults = []
+    for number, line in enumerate(lines[1:], 2):
+        if not line:
+            continue
+        found = _entry(line)
+        if found is None:
+            faults.append(_fault(path, number, _ENTRY, ",".join(line)))
+            continue
+        name, at, value = found
+        trace = traces.setdefault(name.casefold(), [])
+        if trace and at <= trace[-1][0]:
+            faults.append(_fault(path, number, f"a time after {trace[-1][0]:g} s for {name}", f"{at:g}"))
+            continue
+        trace.append((at, value))
+    if faults:
+        raise CellError(faults)
+    return {name: tuple(trace) for name, trace in traces.items()}
+
+
+def _entry(line: list[str]) -> tuple[str, float, float] | None:
+    """Input, time and value of a line, None where it is no change of an input."""
+    if len(line) != len(HEADER) or not line[1].strip():
+        return None
+    word = line[2].strip()
+    try:
+        at, value = float(line[0]), _WORDS.get(word.casefold())
+        value = float(word) if value is None else value
+    except ValueError:
+        return None
+    return (line[1].strip(), at, value) if isfinite(at) and at >= 0.0 and isfinite(value) else None
+
+
+def _fault(path: Path, line: int, expected: str, found: str) -> Diagnostic:
+    place = Place(str(path), key=f"line {line}")
+    return report("IRL618", place, line=line, expected=expected, found=found)

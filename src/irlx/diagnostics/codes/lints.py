@@ -1,0 +1,36 @@
+"""IRL280 to IRL299 and IRL310 to IRL329: what is allowed and seldom meant."""
+
+from irlx.diagnostics.codes.code import Code, warning
+
+LINTS: tuple[Code, ...] = (
+    warning(
+        "IRL280",
+        "this means {ours}; Pascal would read {pascals}",
+        "write the parentheses that are meant",
+    ),
+    warning("IRL281", "the {kind} '{name}' is never used"),
+    warning("IRL282", "'{name}' is read but never set", "assign to it, or give it an initial value"),
+    warning("IRL283", "this statement is never reached"),
+    warning(
+        "IRL284",
+        "this {loop} never ends",
+        "EXIT, RETURN, HALT or a GOTO inside it would end it",
+    ),
+    warning(
+        "IRL285",
+        "this WAIT FOR may wait for ever",
+        "give it a limit: WAIT FOR condition TIMEOUT seconds SEC",
+    ),
+    warning(
+        "IRL286",
+        "{op} compares REAL numbers digit for digit",
+        "compare the difference with a tolerance: ABS(a - b) < 1E-6",
+    ),
+    warning("IRL287", "the function {name} can end without a RETURN"),
+    warning("IRL310", "the lower bound {low} of joint {joint} is above its upper bound {high}"),
+    warning(
+        "IRL311",
+        "the path that begins here at {begin} does not come back: it ends at {end}",
+        "CYCLICSTART brings the posture back where the tool comes back",
+    ),
+)

@@ -1,0 +1,190 @@
+"""Expressions that only the machine can tell: each is a step that yields a question and keeps the answer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import pi
+from typing import TYPE_CHECKING, Any
+
+from irlx.blocks import (
+    AskInput,
+    AskManipulability,
+    AskNearestPosture,
+    AskPose,
+    AskPosture,
+    AskPostureOf,
+    InputBlock,
+    Question,
+    SignalKind,
+)
+from irlx.interpreter.code import Frame, Step
+from irlx.interpreter.compiled import Compiled, first_failing
+from irlx.interpreter.errors import fail
+from irlx.interpreter.joints import main_joints, si_values
+from irlx.interpreter.scope import Signal
+from irlx.interpreter.targets import origin_of, pose_of_answer, pose_target
+from irlx.interpreter.types import POSE, POSITION, REAL, Record, Type
+from irlx.interpreter.values import ArrayValue, RecordValue
+from irlx.language import tree
+
+if TYPE_CHECKING:
+    from irlx.interpreter.expressions import Expressions
+
+ACTUAL = frozenset({"r_joint_act", "r_robtarget_act"})
+"""System variables that tell where the robot is, casefolded."""
+ASKING = frozenset({"posture", "fk", "ik", "manipulability"})
+"""Functions that ask the machine, casefolded."""
+
+Answer = tuple[float, ...]
+
+
+class Asking:
+    """Compiles what asks, for expressions."""
+
+    def __init__(self, expressions: Expressions) -> None:
+        self._expressions = expressions
+
+    def actual(self, node: tree.Designator) -> Compiled:
+        """R_JOINT_ACT or R_ROBTARGET_ACT, or a part of it. Raises InterpreterError."""
+        context = self._expressions.context
+        type = self._type("joint" if node.base.key == "r_joint_act" else "robtarget")
+        way = self._expressions.designators.way(node, type)
+        self._machine_for(node.base)
+        asked = AskPosture(origin_of(context.source, node))
+        posture = self._ask(node, lambda _: asked, lambda answer: answer)
+        if node.base.key == "r_joint_act":
+            main = self._type("main_joint")
+            (empty,) = context.rest["JOINT"]
+
+            def joint(frame: Frame) -> RecordValue:
+                return RecordValue(type, (main_joints(main, posture(frame), context.setting), empty))
+
+            return self._expressions.designators.part(node, joint, way)
+        return self._expressions.designators.part(node, self._robtarget(node, type, posture), way)
+
+    def _robtarget(self, node: tree.Node, type: Record, posture: Callable[[Frame], Answer]) -> Any:
+        """The target that the tool is at: pose and turns of the posture; nothing is known of its status."""
+        context = self._expressions.context
+        origin, slides = origin_of(context.source, node), context.setting.prismatic
+        pose = self._ask(node, lambda frame: AskPose(origin, posture(frame)), pose_of_answer)
+        _, turns, empty = context.rest["ROBTARGET"]
+        if not isinstance(turns, ArrayValue):
+            raise TypeError("turns come in an array")
+
+        def robtarget(frame: Frame) -> RecordValue:
+            values = zip(posture(frame), slides, strict=True)
+            # A posture from -180 to 180 degrees has made no turn.
+            counted = [0 if slide else int((abs(value) + pi) // (2 * pi)) for value, slide in values]
+            signed = [-n if value < 0 else n for n, value in zip(counted, posture(frame), strict=True)]
+            return RecordValue(type, (pose(frame), 0, ArrayValue(turns.type, list(signed)), empty))
+
+        return robtarget
+
+    def input(self, node: tree.Designator, signal: Signal) -> Compiled:
+        """The value of an input at that moment; what was read becomes a block. Raises InterpreterError."""
+        context = self._expressions.context
+        self._machine_for(node.base)
+        machine, origin, port = context.machine, origin_of(context.source, node), signal.port
+        asked = AskInput(origin, port, (signal.name, port.name))
+        value = self._ask(node, lambda _: asked, lambda answer: answer[0])
+        assembler = context.assembler
+        assert assembler is not None
+
+        def make(following: int) -> Step:
+            def step(frame: Frame) -> int:
+                block = InputBlock(id=machine.next_id(), origin=origin, port=port, value=value(frame))
+                return machine.emit((block,), following)
+
+            return step
+
+        assembler.add(node, make)
+        to: Callable[[float], Any] = {SignalKind.BOOL: bool, SignalKind.INT: int}.get(port.kind, float)
+        return Compiled(signal.type, lambda frame: to(value(frame)))
+
+    def call(self, name: tree.Name, given: Sequence[tree.Expression], node: tree.Node) -> Compiled:
+        """A function that asks. Raises InterpreterError: IRL228, IRL590."""
+        if name.key == "posture" and len(given) == 2:
+            what = "the function POSTURE with an obstacle"
+            raise fail("IRL590", self._expressions.source, name.span, what=what)
+        self._machine_for(name)
+        main, joint = self._type("main_joint"), self._type("joint")
+        postures, places = (main, joint), (POSE, POSITION)
+        types = {
+            "posture": (places,),
+            "ik": (places, postures),
+            "fk": (postures,),
+            "manipulability": (postures,),
+        }[name.key]
+        parts = self._expressions.arguments(name.key.upper(), types, given, node)
+        wrong = first_failing(parts)
+        if wrong is not None:
+            return wrong
+        runs = [part.run for part in parts]
+        if name.key in ("posture", "ik"):
+            return self._posture(node, runs, main)
+        return self._of_posture(name.key, node, runs[0])
+
+    def _posture(self, node: tree.Node, runs: Sequence[Callable[[Frame], Any]], main: Record) -> Compiled:
+        """POSTURE and IK: a posture of a pose."""
+        context = self._expressions.context
+        origin, setting = origin_of(context.source, node), context.setting
+
+        def question(frame: Frame) -> Question:
+            target = pose_target(runs[0](frame))
+            if len(runs) == 1:
+                return AskPostureOf(origin, target.position, target.orientation)
+            near = si_values(runs[1](frame), setting)
+            return AskNearestPosture(origin, target.position, target.orientation, near)
+
+        found = self._ask(node, question, lambda answer: main_joints(main, answer, setting))
+        return Compiled(main, found)
+
+    def _of_posture(self, key: str, node: tree.Node, run: Callable[[Frame], Any]) -> Compiled:
+        """FK and MANIPULABILITY: what a posture is like."""
+        context = self._expressions.context
+        origin, setting = origin_of(context.source, node), context.setting
+        kind = AskPose if key == "fk" else AskManipulability
+
+        def question(frame: Frame) -> Question:
+            return kind(origin, si_values(run(frame), setting))
+
+        if key == "fk":
+            return Compiled(POSE, self._ask(node, question, pose_of_answer))
+        return Compiled(REAL, self._ask(node, question, lambda answer: answer[0]))
+
+    # ---- steps
+
+    def _machine_for(self, name: tree.Name) -> None:
+        """Raises InterpreterError, IRL590, in constants, which come before there is a machine to ask."""
+        if self._expressions.context.assembler is None:
+            kind = "system variable" if name.key in ACTUAL else "function"
+            what = f"the {kind} {name.name} in a constant"
+            raise fail("IRL590", self._expressions.source, name.span, what=what)
+
+    def _ask(
+        self, node: tree.Node, question: Callable[[Frame], Question], meaning: Callable[[Answer], Any]
+    ) -> Callable[[Frame], Any]:
+        """Add a step that asks; what gives the answer's meaning afterwards."""
+        context = self._expressions.context
+        assembler, machine = context.assembler, context.machine
+        if assembler is None:
+            raise TypeError("constants do not ask")
+        slot = assembler.slot()
+
+        def make(following: int) -> Step:
+            def step(frame: Frame) -> int:
+                def taken(answer: Answer) -> None:
+                    frame[slot] = meaning(answer)
+
+                return machine.ask(question(frame), taken, following)
+
+            return step
+
+        assembler.add(node, make)
+        return lambda frame: frame[slot]
+
+    def _type(self, key: str) -> Record:
+        found: Type | None = self._expressions.scope.type(key)
+        if not isinstance(found, Record):
+            raise TypeError("joint types are records")
+        return found

@@ -1,0 +1,72 @@
+"""What all parts of a running program share: the machine, system variables, data lists, modules."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TypeAlias
+
+from irlx.interpreter.list_text import Rewritten, rewritten
+from irlx.interpreter.machine import Machine
+from irlx.interpreter.scope import Scope, Variable
+from irlx.interpreter.setting import SYSTEM_REALS, Setting
+from irlx.interpreter.types import ADD_JOINT, INT, POSE, REAL, Array, Record, predefined_types
+from irlx.interpreter.values import ArrayValue, RecordValue, Value, share, unset_value
+from irlx.language.data_lists import ImportedList
+
+ListValues: TypeAlias = "Callable[[ImportedList, Scope, World], dict[str, Variable]]"
+
+
+class World:
+    """Exists once a run; `modules` are the scopes of those that are declared, by casefolded name."""
+
+    def __init__(self, setting: Setting, machine: Machine) -> None:
+        self.setting = setting
+        self.machine = machine
+        self.modules: dict[str, Scope] = {}
+        self._lists: dict[str, dict[str, Variable]] = {}
+        self._first: dict[str, dict[str, Value]] = {}
+        joints = len(setting.joint_names)
+        empty = RecordValue(ADD_JOINT, ())
+        turns = ArrayValue(Array(((1, joints),), INT), [0] * joints, shared=True)
+        self.rest: Mapping[str, tuple[Value, ...]] = {"JOINT": (empty,), "ROBTARGET": (0, turns, empty)}
+        self._system = _system_variables(setting)
+
+    def scope(self, announced: frozenset[str], imported: frozenset[str]) -> Scope:
+        """A fresh scope with what every part knows: system variables, poses of the cell, predefined types."""
+        types = predefined_types(len(self.setting.joint_names))
+        return Scope(dict(self._system), types, announced=announced, imported=imported)
+
+    def data_list(self, found: ImportedList, scope: Scope, values: ListValues) -> dict[str, Variable]:
+        """Variables of a data list: the same ones for all that import it."""
+        known = self._lists.get(found.source.name)
+        if known is None:
+            known = self._lists[found.source.name] = values(found, scope, self)
+            first = {key: variable.value for key, variable in known.items()}
+            for value in first.values():
+                share(value)
+            self._first[found.source.name] = first
+        return known
+
+    def rewritten(self, found: ImportedList) -> Rewritten:
+        """Text of a data list that was imported, with its present values."""
+        name = found.source.name
+        return rewritten(found, self._lists.get(name, {}), self._first.get(name, {}))
+
+
+def _system_variables(setting: Setting) -> dict[str, Variable]:
+    variables = {n.casefold(): Variable(n, REAL, float(setting.defaults[n])) for n in SYSTEM_REALS}
+    for name, (at, turned) in setting.poses.items():
+        value = RecordValue(POSE, (_reals(0, at), _reals(1, turned)))
+        variables[name.casefold()] = Variable(name, POSE, value, constant=True)
+    types = predefined_types(len(setting.joint_names))
+    # Read by questions; what stands here says that they cannot be set.
+    for name, type in (("R_JOINT_ACT", "joint"), ("R_ROBTARGET_ACT", "robtarget")):
+        variables[name.casefold()] = Variable(name, types[type], unset_value(types[type]), constant=True)
+    return variables
+
+
+def _reals(field: int, values: tuple[float, ...]) -> Value:
+    type = POSE.fields[field][1]
+    if not isinstance(type, Record):
+        raise TypeError("parts of a pose are records")
+    return RecordValue(type, values)

@@ -1,0 +1,173 @@
+"""Calls: of built-in functions, constructors, and the functions and procedures that a program declares."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from irlx.diagnostics import Related
+from irlx.language import tree
+from irlx.language.checking.context import NOTHING, Context, Typed
+from irlx.language.checking.names import Constant, Entry
+from irlx.language.checking.words import count
+from irlx.language.references import Reference
+from irlx.language.types import (
+    ORIENTATION,
+    REAL,
+    UNKNOWN,
+    Array,
+    Parameter,
+    Record,
+    Signature,
+    Type,
+    is_number,
+)
+
+_OPTIONAL_PARTS = frozenset({"joint", "robtarget"})
+"""Constructors that may leave out all but the first part."""
+
+
+class Calls(Context):
+    """Types of calls."""
+
+    def unit_length(self, node: tree.Node, quaternion: tuple[Constant | None, ...]) -> None:
+        """A quaternion that the text tells must have length 1."""
+        raise NotImplementedError
+
+    def variable_argument(self, node: tree.Argument, where: str, expected: Type | None) -> None:
+        """An argument that the routine sets."""
+        raise NotImplementedError
+
+    def function_call(self, node: tree.FunctionCall) -> Typed:
+        """Type of a call; a declared function hides a built-in one, a variable does not."""
+        name = node.name
+        entry = self.names.value(name.key)
+        if entry is not None and entry.signature is not None and entry.signature.result is not None:
+            return self._declared(entry, entry.signature, node)
+        type = self.names.types.get(name.key)
+        if type is not None:
+            self._uses_type(name)
+            return self._constructed(node, type)
+        signature = self.names.functions.get(name.key)
+        if signature is not None:
+            return self._built_in(node, signature)
+        self.unknown_arguments(node.arguments)
+        if entry is not None and entry.symbol is not None:
+            self.references.append(Reference(name.span, entry.symbol, "call"))
+            if entry.kind == "procedure":
+                self.add("IRL250", name, name=name.name, found="a procedure", expected="a function")
+        return NOTHING
+
+    def _uses_type(self, name: tree.Name) -> None:
+        symbol = self.names.type_symbol(name.key)
+        if symbol is not None:
+            self.references.append(Reference(name.span, symbol, "type"))
+
+    def _declared(self, entry: Entry, signature: Signature, node: tree.FunctionCall) -> Typed:
+        if entry.symbol is not None:
+            self.references.append(Reference(node.name.span, entry.symbol, "call"))
+        self.arguments(signature, node.arguments, node, self.declared_here(entry))
+        return Typed(signature.result or UNKNOWN)
+
+    def _built_in(self, node: tree.FunctionCall, signature: Signature) -> Typed:
+        found = self.arguments(signature, node.arguments, node)
+        if signature.like_first:
+            return Typed(found[0].type) if found else NOTHING
+        if signature.name == "ORIQUAT":
+            self.unit_length(node, tuple([part.value for part in found]))
+        return Typed(signature.result or UNKNOWN)
+
+    def _constructed(self, node: tree.FunctionCall, type: Type) -> Typed:
+        """A record or array made by the name of its type and its parts."""
+        arguments = node.arguments
+        symbol = self.names.type_symbol(node.name.key)
+        name = symbol.name.name if symbol is not None else node.name.key.upper()
+        if isinstance(type, Record) and not type.pattern:
+            parameters = tuple([Parameter("", (part,)) for _, part in type.fields])
+            least = 1 if node.name.key in _OPTIONAL_PARTS else len(parameters)
+            found = self.arguments(Signature(name, parameters, type, least), arguments, node)
+        elif isinstance(type, Record | Array):
+            element = type.element if isinstance(type, Array) else REAL
+            size = type.size if isinstance(type, Array) and type.size else len(arguments)
+            parameters = (Parameter("", (element,)),) * size
+            found = self.arguments(Signature(name, parameters, type, size), arguments, node)
+        else:
+            self.unknown_arguments(arguments)
+            return Typed(type)
+        value = tuple([part.value for part in found]) if found else None
+        if type is ORIENTATION and value is not None:
+            self.unit_length(node, value)
+        return Typed(type, value)
+
+    # ---- arguments
+
+    def arguments(
+        self,
+        signature: Signature,
+        arguments: tuple[tree.Argument, ...],
+        node: tree.Node,
+        related: tuple[Related, ...] = (),
+    ) -> list[Typed]:
+        """Types of arguments that a routine takes; none where their number is wrong, which is told."""
+        parameters = signature.parameters
+        if not signature.least <= len(arguments) <= len(parameters):
+            self.unknown_arguments(arguments)
+            data: dict[str, Any] = {"function": signature.name, "expected": _expected(signature)}
+            self.add("IRL228", node, related=related, found=len(arguments), **data)
+            return []
+        return [
+            self._argument(argument, parameter, signature)
+            for argument, parameter in zip(arguments, parameters, strict=False)
+        ]
+
+    def _argument(self, argument: tree.Argument, parameter: Parameter, signature: Signature) -> Typed:
+        if isinstance(argument, tree.FormattedValue):
+            self.layout_unexpected(argument)
+            return NOTHING
+        if parameter.by_reference:
+            where = f"the VAR parameter '{parameter.name}' of {signature.name}"
+            self.variable_argument(argument, where, parameter.types[0])
+            return NOTHING
+        if len(parameter.types) == 1:
+            if parameter.types[0] is UNKNOWN and isinstance(argument, tree.Designator):
+                # The name of an obstacle of the cell is no name of the program.
+                return self.typed(argument) if self.names.value(argument.base.key) else NOTHING
+            return self.fitted(argument, parameter.types[0])
+        return self.one_of(argument, parameter.types)
+
+    def unknown_arguments(self, arguments: tuple[tree.Argument, ...]) -> None:
+        """Look at arguments of which no type is known to be expected."""
+        for argument in arguments:
+            if isinstance(argument, tree.FormattedValue):
+                self.formatted(argument)
+            else:
+                self.fitted(argument, UNKNOWN)
+
+    def formatted(self, node: tree.FormattedValue) -> Typed:
+        """A value with its layout; a precision is for numbers."""
+        found = self.typed(node.value)
+        self.whole(node.width)
+        if node.precision is not None:
+            self.whole(node.precision)
+            if found.type is not UNKNOWN and not is_number(found.type):
+                self.mismatch(node.value, "a number before :width:precision", found.type.name)
+        return found
+
+    def whole(self, node: tree.Expression) -> Typed:
+        """An expression that must be an INT."""
+        raise NotImplementedError
+
+    def layout_unexpected(self, node: tree.FormattedValue) -> None:
+        """A layout where none belongs."""
+        self.formatted(node)
+        self.mismatch(node, "a value without a layout", "one with :width")
+
+
+def _expected(signature: Signature) -> str:
+    most = len(signature.parameters)
+    if signature.least == most:
+        return count(most, "value")
+    return (
+        f"{signature.least} to {most} values"
+        if most > signature.least + 1
+        else f"{signature.least} or {most} values"
+    )

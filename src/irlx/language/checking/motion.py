@@ -1,0 +1,158 @@
+"""Types in MOVE with its parameters and clauses, and in the switches of the redundancy extension."""
+
+from __future__ import annotations
+
+from irlx.language import tree
+from irlx.language.checking.context import Settled, Typed
+from irlx.language.checking.type_forms import TypeForms
+from irlx.language.types import (
+    BOOL,
+    INT,
+    POSE,
+    POSITION,
+    REAL,
+    STRING,
+    UNKNOWN,
+    Array,
+    Record,
+    Type,
+    same_type,
+)
+
+_PARAMETER_TYPES: dict[str, Type] = {"c_pass": BOOL, "profile": STRING, "circ_ori": STRING}
+"""Types of the parameters of MOVE that are no REAL."""
+
+_WORDS = {"profile": ("TRAPEZOID", "S_CURVE"), "circ_ori": ("VIA", "END")}
+_POSITIVE = frozenset(
+    {"speed", "acc", "time", "speed_ori", "acc_ori", "speed_ptp", "acc_ptp", "jerk", "weight"}
+)
+_SHARES = frozenset({"speed_ptp", "acc_ptp"})
+
+LIMIT_TYPES = {
+    "POSITION": ("main_joint_min", "main_joint_max"),
+    "SPEED": ("main_joint_speed_min", "main_joint_speed_max"),
+    "ACCELERATION": ("main_joint_accel_min", "main_joint_accel_max"),
+}
+_TOLERANCE = Record("TOLERANCE", tuple((name, REAL) for name in ("dx", "dy", "dz", "da", "db", "dc")))
+
+
+class Motion(TypeForms):
+    """Types in motion statements."""
+
+    in_main = False
+    """Whether the main statements of a program are looked at, not those of a routine."""
+
+    def _targets(self, move: tree.Move) -> tuple[Type, ...]:
+        if move.incremental:
+            return POSE, POSITION
+        types = self.names.types
+        return POSE, POSITION, types["robtarget"], types["main_joint"], types["joint"]
+
+    def _postures(self) -> tuple[Type, ...]:
+        return self.names.types["main_joint"], self.names.types["joint"]
+
+    def move(self, move: tree.Move) -> None:
+        """Targets, parameters and clauses of a MOVE."""
+        candidates = self._targets(move)
+        for target in move.targets:
+            found = self._listed(target, candidates) if move.path else self._target(target, candidates)
+            if self.in_main:
+                self.facts.targets[id(target)] = found.type, self._settled(target, found)
+        for param in move.params:
+            self._parameter(param, _PARAMETER_TYPES.get(param.name.key, REAL))
+            if param.name.key == "angle" and move.kind == "CIRCLE":
+                self._angle(param)
+        for clause in move.clauses:
+            match clause:
+                case tree.WithLimit():
+                    self.limits(clause)
+                case tree.WithReconfiguration(targets=targets):
+                    for posture in targets:
+                        if move.path:
+                            self._listed(posture, self._postures())
+                        else:
+                            self.one_of(posture, self._postures())
+                case tree.WithCriterion():
+                    self.criterion(clause)
+                case tree.WithTolerance(bands=bands):
+                    self._tolerance(bands)
+
+    def _target(self, target: tree.Expression, candidates: tuple[Type, ...]) -> Typed:
+        if isinstance(target, tree.Aggregate):
+            # Bare values are a POSE, a POSITION or a MAIN_JOINT; the others need their constructor.
+            bare = [type for type in candidates if type.name not in ("ROBTARGET", "JOINT")]
+            return self.one_of(target, tuple(bare))
+        return self.one_of(target, candidates)
+
+    def _listed(self, target: tree.Expression, candidates: tuple[Type, ...]) -> Typed:
+        """A target of a PATH, which may also be an array of them."""
+        if isinstance(target, tree.Designator):
+            trial = self.trial(lambda: self.typed(target))
+            type = trial.typed.type
+            if isinstance(type, Array) and any(same_type(type.element, one) for one in candidates):
+                return self.keep(trial)
+        return self._target(target, candidates)
+
+    def _settled(self, node: tree.Expression, found: Typed) -> Settled:
+        """Value of an expression, or the variable that it is."""
+        if isinstance(node, tree.Designator) and not node.selectors and found.value is None:
+            return self.names.value(node.base.key)
+        return found.value
+
+    # ---- parameters
+
+    def _parameter(self, param: tree.MoveParam, type: Type) -> None:
+        key, shown = param.name.key, param.name.name.upper()
+        value = self.fitted(param.value, type).value
+        words = _WORDS.get(key)
+        if words is not None:
+            if isinstance(value, str) and value.upper() not in words:
+                expected = " or ".join(f"'{word}'" for word in words)
+                self.add("IRL505", param.value, param=shown, expected=expected, value=f"'{value}'")
+        elif isinstance(value, int | float) and not isinstance(value, bool):
+            if key in _POSITIVE and not value > 0:
+                self.add("IRL505", param.value, param=shown, expected="greater than 0", value=f"{value:g}")
+            elif key in _SHARES and value > 100:
+                self.add("IRL505", param.value, param=shown, expected="at most 100 %", value=f"{value:g}")
+
+    def _angle(self, param: tree.MoveParam) -> None:
+        found = self.trial(lambda: self.typed(param.value)).typed
+        if found.value == 0 and found.type in (INT, REAL):
+            self.add("IRL505", param.value, param="ANGLE", expected="other than 0", value="0")
+
+    def criterion(self, node: tree.CriterionStart | tree.WithCriterion) -> None:
+        """Parameters of a criterion: numbers."""
+        for param in node.params:
+            self._parameter(param, REAL)
+
+    def _tolerance(self, bands: tree.Expression) -> None:
+        if isinstance(bands, tree.Aggregate):
+            self.fitted(bands, _TOLERANCE)
+            return
+        found = self.typed(bands).type
+        six = isinstance(found, Array) and found.size in (0, 6)
+        if found is not UNKNOWN and not six:
+            self.mismatch(bands, "6 values for TOLERANCE", found.name)
+
+    # ---- switches
+
+    def limits(self, node: tree.LimitSwitch | tree.WithLimit) -> None:
+        """The two bounds of a limit switch or clause."""
+        types = self.names.types
+        lowest, highest = LIMIT_TYPES[node.kind]
+        lower, upper = self.fitted(node.lower, types[lowest]), self.fitted(node.upper, types[highest])
+        settled = self._settled(node.lower, lower), self._settled(node.upper, upper)
+        self.facts.limits.append((node, *settled))
+
+    def freeze(self, node: tree.FreezeStart) -> None:
+        """Numbers of joints."""
+        most = self.joints.number
+        for joint in node.joints:
+            found = self.fitted(joint, INT)
+            number = found.value
+            if most is not None and isinstance(number, int) and found.type is INT and number > most:
+                self.add("IRL346", joint, number=number, joints=most)
+
+    def reconfiguration(self, node: tree.Reconfiguration) -> None:
+        """The posture of RECONFIGURATION."""
+        self.one_of(node.target, self._postures())

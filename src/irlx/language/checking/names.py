@@ -1,0 +1,112 @@
+"""Names with types: what is in view at a place of a program."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from irlx.language.builtins import SYSTEM_VARIABLES, is_port_name
+from irlx.language.symbols import Symbol, SymbolKind
+from irlx.language.types import (
+    BOOL,
+    POSE,
+    REAL,
+    STRING,
+    UNKNOWN,
+    Signature,
+    Type,
+    built_in_functions,
+)
+
+Constant: TypeAlias = "bool | int | float | str | tuple[Constant | None, ...]"
+"""A value that the text tells; of a record or array a tuple, with None for what it does not tell."""
+
+_SYSTEM_TYPES: dict[str, Type] = {
+    "r_base": POSE,
+    "r_tool": POSE,
+    "r_c_pass": BOOL,
+    "r_profile": STRING,
+    "r_jbd": UNKNOWN,
+    "r_weights": UNKNOWN,
+}
+"""Types of the system variables that are no REAL."""
+
+_READ_ONLY = frozenset(
+    {"r_robtarget_act", "r_joint_act", "r_move_time", "r_distance_forw", "r_distance_back"}
+)
+
+
+@dataclass(slots=True)
+class Entry:
+    """A name in view: its kind, type and, of a constant, its value.
+
+    `settings` counts what sets a variable anywhere in the text, and `settled` is the value that it is set to:
+    after the whole text, a variable that is set once has that value or none.
+    """
+
+    kind: SymbolKind | str
+    type: Type
+    symbol: Symbol | None = None
+    value: Constant | None = None
+    signature: Signature | None = None
+    settings: int = 0
+    settled: Constant | None = None
+
+    def set(self, value: Constant | None, *, whole: bool = True) -> None:
+        """Count what sets the variable, as a `whole` or in part."""
+        self.settings += 1
+        self.settled = value if whole and self.settings == 1 else None
+
+
+class Names:
+    """Values and types in view, by casefolded name; those of a routine hide the outer ones."""
+
+    def __init__(self, types: dict[str, Type], outer: Names | None = None) -> None:
+        self.outer = outer
+        self.types = types
+        self.values: dict[str, Entry] = {}
+        self.type_symbols: dict[str, Symbol] = {}
+        self.functions: dict[str, Signature] = built_in_functions(types) if outer is None else outer.functions
+
+    def inner(self) -> Names:
+        """A view for a routine."""
+        return Names(dict(self.types), self)
+
+    def value(self, key: str) -> Entry | None:
+        """What a name means that is no type."""
+        names: Names | None = self
+        while names is not None:
+            found = names.values.get(key)
+            if found is not None:
+                return found
+            names = names.outer
+        return None
+
+    def type_symbol(self, key: str) -> Symbol | None:
+        """The declared type of a name."""
+        found = self.type_symbols.get(key)
+        return found or (self.outer.type_symbol(key) if self.outer else None)
+
+
+def system_names(types: dict[str, Type], frames: Collection[str]) -> Names:
+    """The outermost names: system variables and the frames of a cell."""
+    names = Names(types)
+    for key, type in _SYSTEM_TYPES.items():
+        names.values[key] = Entry("variable", type)
+    for key in SYSTEM_VARIABLES:
+        if key not in names.values:
+            names.values[key] = Entry("system" if key in _READ_ONLY else "variable", REAL)
+    names.values["r_robtarget_act"].type = types["robtarget"]
+    names.values["r_joint_act"].type = types["joint"]
+    for frame in frames:
+        names.values.setdefault(frame.casefold(), Entry("constant", POSE))
+    return names
+
+
+def port_entry(key: str) -> Entry | None:
+    """What the name of a port means that is not declared."""
+    if not is_port_name(key):
+        return None
+    type = REAL if key.startswith("a") else BOOL
+    return Entry("input" if "in" in key else "output", type)

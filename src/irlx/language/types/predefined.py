@@ -1,0 +1,93 @@
+"""Types that every program knows, and those with one field for each joint of the robot."""
+
+from __future__ import annotations
+
+from irlx.language.types.model import (
+    ANY_BOUNDS,
+    BOOL,
+    CHAR,
+    FILE,
+    INT,
+    REAL,
+    SEMAPHORE,
+    STRING,
+    Array,
+    Record,
+    Type,
+)
+
+
+def _reals(name: str, *fields: str) -> Record:
+    return Record(name, tuple((field, REAL) for field in fields))
+
+
+POSITION = _reals("POSITION", "X", "Y", "Z")
+ORIENTATION = _reals("ORIENTATION", "Q1", "Q2", "Q3", "Q4")
+POSE = Record("POSE", (("POS", POSITION), ("ORI", ORIENTATION)))
+
+ADD_JOINT = Record("ADD_JOINT", ())
+"""Additional joints of a robot that has none."""
+
+_ANY_TURNS = Array((ANY_BOUNDS,), INT)
+
+JOINT_RECORDS = {
+    "main_joint": "A{}",
+    "main_joint_min": "A{}.MIN",
+    "main_joint_max": "A{}.MAX",
+    "main_joint_speed_min": "A{}.S.MIN",
+    "main_joint_speed_max": "A{}.S.MAX",
+    "main_joint_accel_min": "A{}.A.MIN",
+    "main_joint_accel_max": "A{}.A.MAX",
+}
+"""Types with one REAL a joint, by casefolded name, and the pattern of their predefined fields."""
+
+_SIMPLE: dict[str, Type] = {
+    "int": INT,
+    "integer": INT,
+    "real": REAL,
+    "bool": BOOL,
+    "boolean": BOOL,
+    "string": STRING,
+    "position": POSITION,
+    "orientation": ORIENTATION,
+    "pose": POSE,
+}
+_FURTHER: dict[str, Type] = {
+    "char": CHAR,
+    "character": CHAR,
+    "file": FILE,
+    "semaphore": SEMAPHORE,
+}
+
+
+def predefined_types(joints: int) -> dict[str, Type]:
+    """Types that a running program knows, by casefolded name, for a robot of this number of joints."""
+    types = _SIMPLE | {key: joint_record(key, joints) for key in JOINT_RECORDS}
+    return types | {"char": CHAR, "character": CHAR} | _postures(types["main_joint"], joints)
+
+
+def known_types(joints: int | None) -> dict[str, Type]:
+    """Types that the text of a program knows, by casefolded name; `joints` None: the robot is not known."""
+    types = _SIMPLE | _FURTHER | {key: joint_record(key, joints) for key in JOINT_RECORDS}
+    return types | _postures(types["main_joint"], joints)
+
+
+def _postures(main: Type, joints: int | None) -> dict[str, Type]:
+    """JOINT, and ROBTARGET: a pose, marks of its posture, and one whole number of turns a joint."""
+    turns = _ANY_TURNS if joints is None else Array(((1, joints),), INT)
+    fields = (("PSE", POSE), ("STATUS", INT), ("TURNS", turns), ("A_JOINT", ADD_JOINT))
+    robtarget = Record("ROBTARGET", fields)
+    return {"add_joint": ADD_JOINT, "joint": joint_type(main), "robtarget": robtarget}
+
+
+def joint_record(key: str, joints: int | None) -> Record:
+    """Predefined joint type of a casefolded name, for a number of joints or for any."""
+    pattern = JOINT_RECORDS[key]
+    if joints is None:
+        return Record(key.upper(), (), pattern)
+    return _reals(key.upper(), *(pattern.format(number) for number in range(1, joints + 1)))
+
+
+def joint_type(main: Type) -> Record:
+    """JOINT with a type of main joints."""
+    return Record("JOINT", (("M_JOINT", main), ("A_JOINT", ADD_JOINT)))

@@ -1,0 +1,69 @@
+"""`irlx check` finds mistakes of types before anything runs, and without numpy."""
+
+import subprocess
+import sys
+
+import pytest
+
+import irlx
+from irlx.cli.main import main
+
+CELL = '[robot]\nmodel = "arm7"\n'
+
+
+def program(folder, declarations, body):
+    path = folder / "p.irl"
+    path.write_text(f"PROGRAM p;\n{declarations}\nBEGIN\n{body}\nENDPROGRAM\n", encoding="utf-8")
+    return path
+
+
+@pytest.mark.req("LANG-24")
+def test_a_mistake_behind_an_hour_of_motion_is_found_at_once(tmp_path, capsys):
+    path = program(tmp_path, "VAR INT: n;", "MOVE LIN POSITION(600, 0, 400);\nn := 7 / 2;")
+    assert main(["check", str(path)]) != 0
+    assert "p.irl:5:6: error IRL222: expected INT, found REAL" in capsys.readouterr().err
+
+
+@pytest.mark.req("LANG-24")
+def test_a_run_does_not_begin(tmp_path):
+    path = program(tmp_path, "VAR INT: n;", "n := 7 / 2;")
+    with pytest.raises(irlx.IrlxError) as caught:
+        irlx.run(path)
+    assert caught.value.reason.code == "IRL222"
+
+
+@pytest.mark.req("LANG-23")
+def test_a_cell_tells_the_number_of_joints(tmp_path):
+    path = program(tmp_path, "VAR MAIN_JOINT: m := (1, 2, 3);", "MOVE PTP m;")
+    (tmp_path / "p.toml").write_text(CELL, encoding="utf-8")
+    assert [d.code for d in irlx.check(path)] == []
+    found = irlx.check(path, cell=tmp_path / "p.toml")
+    assert [(d.code, d.message) for d in found] == [("IRL223", "MAIN_JOINT takes 7 values, found 3")]
+
+
+@pytest.mark.req("LANG-23")
+def test_a_joint_type_of_another_robot(tmp_path):
+    path = program(tmp_path, "TYPE RECORD REAL: a, b; ENDRECORD = MAIN_JOINT;", "HALT;")
+    (tmp_path / "p.toml").write_text(CELL, encoding="utf-8")
+    (found,) = irlx.check(path, cell=tmp_path / "p.toml")
+    assert (found.code, found.place.line) == ("IRL221", 2)
+    assert found.message == "type MAIN_JOINT is defined with 2 fields, but the robot has 7 joints"
+
+
+@pytest.mark.req("LANG-73")
+def test_lints_are_for_the_check_alone(tmp_path):
+    path = program(tmp_path, "VAR INT: n;", "HALT;")
+    (tmp_path / "p.toml").write_text(CELL, encoding="utf-8")
+    assert [d.code for d in irlx.check(path)] == ["IRL281"]
+    assert list(irlx.run(path).diagnostics) == []
+
+
+def test_no_numeric_library_is_loaded(tmp_path):
+    path = program(
+        tmp_path, "VAR POSE: p := ((1, 2, 3), ORIZYX(0, 1, 2));", "MOVE LIN p + POSITION(0, 0, 1);"
+    )
+    code = (
+        f"import irlx, sys; assert irlx.check({str(path)!r}) == []; "
+        "assert not {'numpy', 'pinocchio', 'scipy'} & set(sys.modules), 'loaded'"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
