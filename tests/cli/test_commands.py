@@ -65,7 +65,7 @@ def test_json(command, folder):
 
 
 def test_json_of_a_run_that_ends_early(inside, folder, names):
-    text = (folder / "p.irl").read_text().replace("MOVE LIN home;", "OBSTACLE wall;")
+    text = (folder / "p.irl").read_text().replace("MOVE LIN home;", "MOVE_INC LIN home;")
     (folder / "p.irl").write_text(text)
     done = inside("run", "p.irl", "--json")
     found = json.loads(done.stdout)

@@ -176,6 +176,36 @@ def test_what_is_wrong_is_told_in_its_file(files, declarations, others, expected
     assert told(files(declarations, "", **others)) == expected
 
 
+TYPED = [
+    ("t := lift;", ["5:6: error IRL222: expected STRING, found REAL"]),
+    ("lift := 3;", ["5:1: error IRL211: 'lift' is a constant and cannot be set"]),
+    ("count := 1.5;", ["5:10: error IRL222: expected INT, found REAL"]),
+    ("count := lift DIV 2;", ["5:10: error IRL227: DIV is not defined for REAL and INT"]),
+    ("q.a := up(home); q.b := up(s.at); x := lift + count; FOR count := 1 TO 3 DO bumped; ENDFOR;", []),
+    ("q.a := up(lift);", ["5:11: error IRL222: expected POSE, found REAL"]),
+    ("q.a := up();", ["5:8: error IRL228: up takes 1 value, found 0"]),
+    ("q.a := s.at; s := (home); s.on := home;", ["5:28: error IRL225: spot has no field 'on'"]),
+    ("again(home);", ["5:7: error IRL222: expected spot, found POSE"]),
+    ("x := bumped;", ["5:6: error IRL250: 'bumped' is a procedure, not a value"]),
+    ("count;", ["5:1: error IRL250: 'count' is a variable, not a procedure"]),
+]
+
+
+@pytest.mark.req("LANG-20")
+@pytest.mark.parametrize(("body", "expected"), TYPED)
+def test_names_have_the_types_of_the_module(files, body, expected):
+    path = files(f"{PROGRAM} STRING: t; REAL: x;", body, tools_irl=TOOLS, places_irl=PLACES)
+    errors = [str(found) for found in irlx.check(path) if found.is_error]
+    assert [one.removeprefix(f"{path}:").split(";")[0] for one in errors] == expected
+
+
+def test_what_is_wrong_in_a_module_is_told_once(files):
+    tools = """MODULE tools; EXPORT x, f; VAR nothing: x;
+    FUNCTION f(nothing: n): INT; BEGIN RETURN 1; ENDFCT; ENDMODULE"""
+    path = files("FROM tools IMPORT x, f, gone;", "x := f(gone) + x.a[3]; gone(x);", tools_irl=tools)
+    assert sorted(d.code for d in irlx.check(path) if d.is_error) == ["IRL204", "IRL219"]
+
+
 def test_a_module_that_is_a_folder(files):
     path = files("FROM tools IMPORT x;", "")
     (path.parent / "tools.irl").mkdir()

@@ -76,6 +76,8 @@ class Declarations(TypeForms):
         entry = self._enter(name, "import", part, type, signature=signature)
         if entry is not None and found is not None:
             entry.kind = found.kind
+            # The module may set it as well, and others that import it.
+            entry.set(None, whole=False)
 
     def _announce(self, declarations: Sequence[tree.Declaration], lists: Sequence[ImportedList]) -> None:
         """Names to come: whoever uses one before it is there is told so."""
