@@ -112,6 +112,24 @@ def test_nested_as_deeply_as_the_parser_takes(final):
     assert isinstance(final("VAR INT: i := 1;", loops)["i"], int)
 
 
+DEEP = [
+    ("REAL", "SQRT(" * 98 + "1" + ")" * 98),
+    ("REAL", "DISTANCE((" * 45 + "1" + ", 0, 0), (0, 0, 0))" * 45),
+    ("INT", "-(" * 70 + "1" + ")" * 70),
+    ("BOOL", "NOT (TRUE AND " * 45 + "FALSE" + ")" * 45),
+    ("INT", "v[" * 70 + "1" + "]" * 70),
+    ("INT", "f(" * 98 + "1" + ")" * 98),
+]
+
+
+@pytest.mark.parametrize(("type", "expression"), DEEP)
+def test_deep_expressions_have_values(final, type, expression):
+    declarations = f"""VAR ARRAY [1..1] OF INT: v := (1); FUNCTION f(INT: n): INT; BEGIN RETURN n; ENDFCT;
+    VAR {type}: x; VAR {type}: y := {expression};"""
+    found = final(declarations, f"x := {expression};")
+    assert found["x"] == found["y"]
+
+
 def test_memory_of_a_long_loop_does_not_grow(generator):
     text = """PROGRAM t; VAR INT: i; POSITION: p := (0, 0, 0); STRING: s;
     FUNCTION f(POSITION: p): POSITION; BEGIN RETURN p + POSITION(1, 0, 0); ENDFCT;

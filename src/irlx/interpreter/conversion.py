@@ -71,9 +71,11 @@ def finite(value: Any, where: Where) -> Any:
     return value
 
 
-def parts_needed(type: Record | Array) -> int:
-    """Number of values that an aggregate of a type takes."""
-    return len(type.fields) if isinstance(type, Record) else type.size
+def parts_needed(type: Type) -> int:
+    """Number of values that an aggregate of a type takes; 0 for types that have none."""
+    if isinstance(type, Record):
+        return len(type.fields)
+    return type.size if isinstance(type, Array) else 0
 
 
 def assemble(type: Record | Array, parts: Sequence[Value], where: Where) -> Value:

@@ -284,7 +284,10 @@ class Expressions:
             data = {"expected": expected, "found": found.type.name}
             return failing(fail("IRL222", self.source, node.span, **data), (found,))
         fitting: list[Type] = []
-        for type in candidates:
+        alike = [type for type in candidates if parts_needed(type) == len(node.items)]
+        if len(alike) == 1:
+            return self.value(node, alike[0])
+        for type in alike:
             mark = self.context.mark()
             found = self.value(node, type)
             self.context.undo(mark)

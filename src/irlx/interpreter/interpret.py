@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
@@ -19,6 +20,10 @@ from irlx.language.data_lists import ImportedList
 from irlx.language.modules import ImportedModule
 
 __all__ = ["MAX_STEPS", "Answer", "Blocks", "Interpretation", "declared_scope", "interpret"]
+
+
+_FRAMES = 4000
+"""Frames of Python for the 150 levels of an expression, ten or so for each, inside those of statements."""
 
 
 class Interpretation:
@@ -39,7 +44,7 @@ class Interpretation:
     ) -> None:
         self._machine = Machine(max_steps)
         self._world = World(setting, self._machine)
-        with _no_collection():
+        with _compiling():
             self._prepare(program, source, lists, modules)
 
     def _prepare(
@@ -83,14 +88,19 @@ class Interpretation:
 
 
 @contextmanager
-def _no_collection() -> Iterator[None]:
-    """No search for garbage: compiling makes many objects, all of which stay, and it is half of the time."""
-    was_on = gc.isenabled()
+def _compiling() -> Iterator[None]:
+    """Room for expressions as deep as the parser takes them, and no search for garbage meanwhile.
+
+    Compiling makes many objects, all of which stay: to look for others among them is half of the time.
+    """
+    collecting, depth = gc.isenabled(), sys.getrecursionlimit()
     gc.disable()
+    sys.setrecursionlimit(max(depth, _FRAMES))
     try:
         yield
     finally:
-        if was_on:
+        sys.setrecursionlimit(depth)
+        if collecting:
             gc.enable()
 
 
