@@ -4,8 +4,11 @@ import tracemalloc
 
 import pytest
 
+from irlx.diagnostics import Span
+from irlx.interpreter.code import Code
 from irlx.interpreter.errors import InterpreterError
 from irlx.interpreter.interpret import interpret
+from irlx.interpreter.machine import Machine
 from irlx.language.analysis import analyse
 from irlx.language.source import source_text
 
@@ -128,6 +131,18 @@ def test_deep_expressions_have_values(final, type, expression):
     VAR {type}: x; VAR {type}: y := {expression};"""
     found = final(declarations, f"x := {expression};")
     assert found["x"] == found["y"]
+
+
+def test_a_stack_of_python_that_runs_out_is_told_at_the_statement():
+    """Whatever the depth of the caller's own stack: there is no RecursionError."""
+
+    def endless(frame):
+        return endless(frame)
+
+    source = source_text("t.irl", "x := 1;")
+    with pytest.raises(InterpreterError) as caught:
+        list(Machine().run(Code(source, [endless], [Span(0, 6)])))
+    assert (caught.value.reason.code, caught.value.reason.place.span) == ("IRL513", Span(0, 6))
 
 
 def test_memory_of_a_long_loop_does_not_grow(generator):

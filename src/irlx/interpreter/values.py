@@ -43,11 +43,15 @@ class RecordValue:
 
 @dataclass
 class ArrayValue:
-    """Elements of an array, the last index running fastest; `shared` ones must not change any more."""
+    """Elements of an array, the last index running fastest; `shared` ones must not change any more.
+
+    `complete` ones were seen to have values everywhere: what has one never loses it.
+    """
 
     type: Array
     values: list[Value]
     shared: bool = field(default=False, compare=False)
+    complete: bool = field(default=False, compare=False)
 
     def unshared(self) -> ArrayValue:
         """This array where it may change, else a copy that may."""
@@ -56,7 +60,7 @@ class ArrayValue:
         if has_arrays(self.type.element):
             for value in self.values:
                 share(value)
-        return ArrayValue(self.type, self.values.copy())
+        return ArrayValue(self.type, self.values.copy(), complete=self.complete)
 
 
 Value: TypeAlias = bool | int | float | str | RecordValue | ArrayValue | Unset
@@ -114,8 +118,11 @@ def unset_value(type: Type) -> Value:
 
 def is_set(value: Value) -> bool:
     """Whether a value, and every part of it, has been assigned."""
-    if isinstance(value, RecordValue | ArrayValue):
+    if isinstance(value, RecordValue):
         return all(map(is_set, value.values))
+    if isinstance(value, ArrayValue):
+        value.complete = value.complete or all(map(is_set, value.values))
+        return value.complete
     return value is not UNSET
 
 
