@@ -5,7 +5,8 @@ A case is a folder with `program.irl`, files that it needs (`*.dat`, `*.irl`, `c
 - `blocks.txt`: the program runs, and these are its function blocks as `irlx blocks` prints them;
 - `output.txt`: the program runs, and this is what it writes to its standard channel;
 - `error.txt`: the program must fail, with these errors, one a line: ``line:column: CODE message``;
-- `check.txt`: the program is accepted, with these warnings in the same form, none where the file is empty.
+- `check.txt`: the program is accepted, with these warnings in the same form, none where the file is
+  empty; lints do not count.
 
 The cell is the nearest `cell.toml`, in the folder of the case or above it, up to that of all cases.
 """
@@ -19,13 +20,15 @@ from pathlib import Path
 
 from irlx.checking import check
 from irlx.diagnostics import Diagnostic, IrlxError
+from irlx.diagnostics.codes.lints import LINTS
 
 __all__ = ["Case", "Outcome", "expectation_text", "find_cases", "run_case", "update_case"]
 
 PROGRAM = "program.irl"
 EXPECTATIONS = ("blocks.txt", "output.txt", "error.txt", "check.txt")
-# What a version does not execute yet says nothing of the program.
-_NOT_YET = frozenset({"IRL590", "IRL591"})
+# What a version does not execute yet says nothing of the program, and lints are a matter of taste.
+_UNEXECUTED = frozenset({"IRL590", "IRL591"})
+_ASIDE = frozenset({*_UNEXECUTED, *(lint.id for lint in LINTS)})
 
 
 @dataclass(frozen=True)
@@ -131,7 +134,7 @@ def _concise(case: Case, findings: list[Diagnostic]) -> list[str]:
     """Findings as ``line:column: CODE message``; before them the file, where it is not the program."""
     lines = []
     for finding in findings:
-        if finding.code in _NOT_YET:
+        if finding.code in _ASIDE:
             continue
         place = str(finding.place or "").removeprefix(f"{case.folder / PROGRAM}:")
         place = place.replace(f"{case.folder.as_posix()}/", "")
@@ -146,7 +149,7 @@ def _failures_of_a_run(case: Case) -> list[Diagnostic]:
         for _ in _block_lines(case):
             pass
     except IrlxError as error:
-        return [found for found in error.diagnostics if found.is_error and found.code not in _NOT_YET]
+        return [found for found in error.diagnostics if found.is_error and found.code not in _UNEXECUTED]
     return []
 
 

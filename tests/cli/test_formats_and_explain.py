@@ -10,7 +10,7 @@ import pytest
 
 from irlx.diagnostics import CATALOGUE
 
-BAD = "PROGRAM b;\nBEGIN\n  x := 1;\n  OUT_3 := TRUE;\nENDPROGRAM\n"
+BAD = "PROGRAM b;\nBEGIN\n  x := 1;\n  OUT_3 := TRUE;\n  WRITE(1);\nENDPROGRAM\n"
 
 
 @pytest.mark.req("LANG-75")

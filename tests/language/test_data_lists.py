@@ -95,8 +95,8 @@ SYNTAX = {
         "2:13 IRL102 missing ';' after the declaration"
     ],
     "DATALIST points;\nREAL: a = 1;\nENDDATALIST": ["2:9 IRL105 '=' taken for ':='"],
-    "DATALIST points;\nPOSITION: a := (1, 2;\nREAL: b := c;\nENDDATALIST": [
-        "2:21 IRL120 missing ')' before ';'",
+    "DATALIST points;\nREAL: a := (1 + 2;\nREAL: b := c;\nENDDATALIST": [
+        "2:18 IRL120 missing ')' before ';'",
         "3:12 IRL201 unknown name 'c'",
     ],
     "DATALIST points;\nVAR REAL: a := 1;\nENDDATALIST": [

@@ -133,7 +133,7 @@ def test_constants_know_nothing_of_data_lists(told_of):
 @pytest.mark.parametrize(
     ("body", "wanted"),
     [
-        ("x := (1, 2;\ny := 3;", ["IRL101"]),
+        ("x := (1, 2;\ny := 3;", ["IRL120"]),
         ("x := ;\ny := 3;", ["IRL101"]),
         ("MOVE LIN (1, , 3);\ny := 3;", ["IRL101"]),
         ("x := 5 5;\n\n\ny := TRUE;", ["IRL101", "IRL222"]),

@@ -10,7 +10,7 @@ def told(analysis):
 
 
 def in_body(text):
-    names = "VAR REAL: x, y, z; POSE: p, q; ARRAY [1..9] OF REAL: r; BOOL: a, b; MAIN_JOINT: j;"
+    names = "VAR REAL: x, y, z; POSE: p, q; ARRAY [1..9] OF REAL: r; BOOL: a, b; MAIN_JOINT: j; INT: n;"
     return f"PROGRAM t; {names}\nBEGIN\n{text}\nENDPROGRAM\n"
 
 
@@ -51,7 +51,7 @@ CASES = {
         "7:1 IRL125 ELSE IF begins a second IF, and there is no ENDIF for it",
     ],
     "IF a THEN\n  x := 1;\nELSE IF b THEN\n  y := 1;\nENDIF;\nENDIF;": [],
-    "CASE x OF\n  WHEN 1:\n    IF a THEN\n      y := 1;\n  WHEN 2:\n    y := 2;\nENDCASE;": [
+    "CASE n OF\n  WHEN 1:\n    IF a THEN\n      y := 1;\n  WHEN 2:\n    y := 2;\nENDCASE;": [
         "7:3 IRL107 missing ENDIF for the IF of line 5, found the keyword WHEN"
     ],
     "WHILE a DO\n  x := 1;\nEND WHILE;": [
@@ -136,7 +136,7 @@ WHOLE = {
     "PROGRAM t;\nTYPE RECORD REAL: a; ENDRECORD X;\nVAR X: b;\nBEGIN ENDPROGRAM": [
         "2:31 IRL120 missing '=' before the name 'X'"
     ],
-    "PROGRAM t;\nPROCEDURE p(INT x; INT: y);\nBEGIN\nENDPROC;\nBEGIN p; ENDPROGRAM": [
+    "PROGRAM t;\nPROCEDURE p(INT x; INT: y);\nBEGIN\nENDPROC;\nBEGIN p(1, 2); ENDPROGRAM": [
         "2:16 IRL120 missing ':' before the name 'x'"
     ],
     "PROGRAM t;\nBEGIN\n  HALT;\n": [

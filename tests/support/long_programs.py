@@ -42,11 +42,11 @@ VAR
   REAL: slow;
 BEGIN
   slow := 100. + gap;
-  MOVE LIN place + (0, 0, lift) SPEED := 500.;
+  MOVE LIN place + POSITION(0, 0, lift) SPEED := 500.;
   MOVE LIN place SPEED := slow;
   gripper := TRUE;
   WAIT 0.2 SEC;
-  MOVE LIN place + (0, 0, lift);
+  MOVE LIN place + POSITION(0, 0, lift);
   taken := taken + 1;
 ENDPROC;
 """,
@@ -56,7 +56,7 @@ BEGIN
   IF height < 0. THEN
     RETURN place;
   ENDIF;
-  RETURN place + (0, 0, height);
+  RETURN place + POSITION(0, 0, height);
 ENDFCT;
 """,
     """\
@@ -71,7 +71,7 @@ ENDPROC;
 PIECES = (
     """\
   { approach from above }
-  MOVE LIN rack[{k}] + (0, 0, lift) SPEED := {v}.;
+  MOVE LIN rack[{k}] + POSITION(0, 0, lift) SPEED := {v}.;
   MOVE LIN rack[{k}] SPEED := {v}. ACC := 500.;
   gripper := TRUE;
   WAIT 0.5 SEC;
@@ -105,7 +105,7 @@ PIECES = (
   n := 0;
   WHILE n < {k} DO
     n := n + 1;
-    shift := corner * 2. + (1, 2, 3);
+    shift := corner * 2. + POSITION(1, 2, 3);
   ENDWHILE;
 """,
     """\

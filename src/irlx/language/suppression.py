@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from irlx.diagnostics import CATALOGUE, Diagnostic, Place, Severity, SourceText, Span, report
+from irlx.diagnostics.codes.lints import LINTS
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.language.data_lists import ImportedList, Imports
 from irlx.language.lexing import lex
@@ -20,7 +21,7 @@ _COMMENT = re.compile(
 )
 _FOUND_LATER = frozenset({"IRL363", "IRL591"})
 """Codes that only a look at what can be executed gives."""
-_BY_LINTS = frozenset({"IRL281", "IRL282", "IRL283", "IRL284", "IRL285", "IRL286", "IRL287", "IRL310", "IRL311"})
+_BY_LINTS = frozenset(lint.id for lint in LINTS)
 """Codes that only a check looks for, and a run does not."""
 _OF_IMPORTED_LISTS = frozenset({"IRL243"})
 """Codes of a data list that only a program that imports it gives."""

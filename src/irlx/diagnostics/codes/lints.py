@@ -1,13 +1,8 @@
-"""IRL280 to IRL299 and IRL310 to IRL329: what is allowed and seldom meant."""
+"""IRL281 to IRL299 and IRL310 to IRL329: what is allowed and seldom meant, told by checks."""
 
 from irlx.diagnostics.codes.code import Code, warning
 
 LINTS: tuple[Code, ...] = (
-    warning(
-        "IRL280",
-        "this means {ours}; Pascal would read {pascals}",
-        "write the parentheses that are meant",
-    ),
     warning("IRL281", "the {kind} '{name}' is never used"),
     warning("IRL282", "'{name}' is read but never set", "assign to it, or give it an initial value"),
     warning("IRL283", "this statement is never reached"),

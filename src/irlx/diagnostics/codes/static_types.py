@@ -1,6 +1,6 @@
-"""IRL246 to IRL279: types and routines, as far as the text tells."""
+"""IRL246 to IRL280: types and routines, as far as the text tells."""
 
-from irlx.diagnostics.codes.code import Code, error
+from irlx.diagnostics.codes.code import Code, error, warning
 
 STATIC_TYPES: tuple[Code, ...] = (
     error(
@@ -18,4 +18,9 @@ STATIC_TYPES: tuple[Code, ...] = (
     ),
     error("IRL251", "the constant '{name}' has no value", "write CONST type: name := value;"),
     error("IRL252", "{label} is chosen by an earlier label of this CASE"),
+    warning(
+        "IRL280",
+        "this means {ours}; Pascal would read {pascals}",
+        "write the parentheses that are meant",
+    ),
 )
