@@ -133,3 +133,8 @@ def test_warned_about_as_well(declarations, body, marked):
 )
 def test_system_variables_are_named_as_not_executed(run_error, declarations, statement):
     assert run_error(declarations, statement)[0] == "IRL590"
+
+
+def test_an_unknown_parameter_is_not_one_of_later():
+    """That no MOVE has it is said already (IRL203)."""
+    assert warnings_of(program(START, "MOVE LIN p SPED := 5;")) == []

@@ -46,6 +46,8 @@ MOVE_PARAMS = {
 }
 """Executed parameters of MOVE by casefolded name, and the system variable with their default, '' for none."""
 
+_READ_ONLY_PARAMS = builtins.MOVE_PARAMETERS.keys() - MOVE_PARAMS.keys()
+
 _NAMES: dict[type[tree.Node], str] = {
     tree.RobotBinding: "ROBOT",
     tree.StandardChannel: "STANDARD_IN and STANDARD_OUT",
@@ -70,7 +72,7 @@ def missing_in_move(move: tree.Move) -> tuple[tree.Node, str] | None:
     if move.kind not in ("PTP", "LIN", "CIRCLE"):
         return move, f"MOVE {move.kind}"
     for param in move.params:
-        if param.name.key not in MOVE_PARAMS:
+        if param.name.key in _READ_ONLY_PARAMS:
             return param, f"the parameter {param.name.name}"
     for clause in move.clauses:
         if not isinstance(clause, _CLAUSES):
