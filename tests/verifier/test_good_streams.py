@@ -21,7 +21,13 @@ from machines import machine
 pytestmark = [pytest.mark.req("STR-06"), pytest.mark.req("QA-05")]
 
 QUICK, LONG = range(16), range(1000, 1200)
-NO_BLOCKS = {"blocks", "frozen joints", *CHECKS[CHECKS.index("PTP straight") :]}
+NO_BLOCKS = {
+    "blocks",
+    "frozen joints",
+    "waits still",
+    "waiting time",
+    *CHECKS[CHECKS.index("PTP straight") :],
+}
 """Checks that need block records, which a CSV has not."""
 
 
