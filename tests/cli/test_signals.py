@@ -124,6 +124,10 @@ def test_values_of_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert main(["run", *arguments]) == 0
     stream = read_stream(tmp_path / "o.npz")
     assert len(stream.q) == 76
+    capsys.readouterr()
+    assert main(["blocks", *arguments[:3]]) == 0
+    _, *told = capsys.readouterr().out.splitlines()
+    assert told == ["2 WAIT 0.75 s for go line 3", "3 READ IN_1: TRUE line 3", "4 SET OUT_1 to TRUE line 4"]
     (tmp_path / "in.csv").write_text("time,input,value\n0,go\nx,go,1\n1,go,1\n1,go,0\n", encoding="utf-8")
     capsys.readouterr()
     assert main(["run", *arguments]) == 2

@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
+from irlx.cli.execution import add_execution_options
+
 _EXAMPLE = "example:\n  irlx blocks programs/koch/square.irl\n"
 
 
@@ -19,6 +21,7 @@ def add_parser(commands: Any) -> None:
     )
     parser.add_argument("program", metavar="P.irl", help="program file")
     parser.add_argument("--cell", metavar="C.toml", help="cell file (default: found beside the program)")
+    add_execution_options(parser)
     parser.set_defaults(command=command)
 
 
@@ -28,7 +31,7 @@ def command(options: argparse.Namespace) -> int:
     from irlx.cli.output import print_diagnostics
     from irlx.pipeline import Execution, header_of, prepare
 
-    job = prepare(options.program, options.cell)
+    job = prepare(options.program, options.cell, max_steps=options.max_steps, inputs=options.inputs)
     print_diagnostics(job.program.diagnostics)
     units = header_of(job).joint_units
     for block in Execution(job).blocks():

@@ -11,6 +11,8 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from irlx.cli.execution import add_execution_options
+
 if TYPE_CHECKING:
     from irlx.diagnostics import Diagnostic
     from irlx.pipeline import Job
@@ -50,15 +52,7 @@ def add_parser(commands: Any) -> None:
         metavar="F",
         help="end with IRL525 where limits make a move more than F times as long as programmed",
     )
-    parser.add_argument(
-        "--max-steps",
-        type=int,
-        metavar="N",
-        help="end with IRL510 after N statements (default: 10,000,000)",
-    )
-    parser.add_argument(
-        "--inputs", metavar="CSV", help="what inputs say: lines of time in s, input, value (else the cell's)"
-    )
+    add_execution_options(parser)
     parser.add_argument(
         "--explain-tick",
         type=int,
