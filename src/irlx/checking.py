@@ -8,6 +8,7 @@ from pathlib import Path
 from irlx.diagnostics import Diagnostic, IrlxError
 from irlx.interpreter.support import unsupported
 from irlx.language import tree
+from irlx.language.data_lists import in_order
 from irlx.language.suppression import unused_finding, without_ignored
 from irlx.program import ProgramError, analyse_file
 
@@ -31,7 +32,7 @@ def check(program: PathLike, cell: PathLike | None = None) -> list[Diagnostic]:
         kept, unused = without_ignored(later, analysis.ignores)
         found += kept
         found += [unused_finding(one) for one in unused if one.place.text is analysis.source]
-    return found + of_cell
+    return [*in_order(found, analysis.source, analysis.data_lists), *of_cell]
 
 
 def _cell_findings(cell: PathLike) -> tuple[tuple[str, ...], list[Diagnostic]]:

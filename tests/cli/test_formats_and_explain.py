@@ -8,6 +8,7 @@ import sys
 
 import pytest
 
+import irlx
 from irlx.diagnostics import CATALOGUE
 
 BAD = "PROGRAM b;\nBEGIN\n  x := 1;\n  OUT_3 := TRUE;\n  WRITE(1);\nENDPROGRAM\n"
@@ -100,3 +101,8 @@ def test_ignored_warnings_of_a_run(inside, folder):
     assert inside("check", "p.irl").stdout == "p.irl: 0 errors, 0 warnings\n"
     done = inside("run", "p.irl", "--quiet")
     assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_findings_of_all_stages_come_in_the_order_of_the_text(tmp_path):
+    (tmp_path / "p.irl").write_text("PROGRAM p;\nBEGIN\n  WRITE(1);\n  x := 1;\n  WRITE(2);\nENDPROGRAM\n")
+    assert [finding.code for finding in irlx.check(tmp_path / "p.irl")] == ["IRL591", "IRL201", "IRL591"]
