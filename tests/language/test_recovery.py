@@ -58,6 +58,11 @@ CASES = {
         "5:1 IRL121 'END' is no word of the language; did you mean ENDWHILE?"
     ],
     "{ one\n  line more\nx := 1;": ["3:1 IRL110 comment without end"],
+    "{ one\nx := 1;\ny = 2;\nz := 3;\n{ two }\ny := 4;\n\nWRITELN('a);": [
+        "3:1 IRL110 comment without end",
+        "5:3 IRL105 '=' taken for ':='",
+        "10:9 IRL111 text without closing '",
+    ],
     "{ one\nx := 1;\n{ two }\ny := 2;": [
         "3:1 IRL126 this comment holds the beginning of another one, in line 5"
     ],

@@ -51,7 +51,8 @@ def parse(source: SourceText) -> Parse:
     to light; where blocks do not fit each other, the text is read again as its indentation shows them.
     """
     found = _attempt(source, lex(source))
-    if found.errors and found.lexed.doubtful:
+    in_signs = any(finding.is_error for finding in found.lexed.findings)
+    if (found.errors or in_signs) and found.lexed.doubtful:
         other = _attempt(source, lex(source, trust_comments=False))
         if _is_code(source, other):
             found = other
