@@ -219,8 +219,9 @@ def joints(*values: float) -> Entries:
 def law(speed: float = 250.0, acc: float = 1000.0, speed_ori: float = 90.0, **more: Any) -> Entries:
     """Time law from mm and degrees per s, s2; what is not given is the cell's default."""
     way = {"speed": speed * 1e-3, "acc": acc * 1e-3}
+    shape = {"profile": "TRAPEZOID", "jerk": None, "override": 1.0}
     turning = {"speed_ori": radians(speed_ori), "acc_ori": radians(180.0)}
-    return {**way, **turning, "speed_ptp": 1.0, "acc_ptp": 1.0, "duration": None, **more}
+    return {**way, **turning, "speed_ptp": 1.0, "acc_ptp": 1.0, "duration": None, **shape, **more}
 
 
 def move(
@@ -229,12 +230,12 @@ def move(
     """The block of a move."""
     course = laws.pop("course", None)
     entries = {"kind": kind, "target": target, "law": law(**laws), "limits": [], "course": course}
-    return Step(MOVE, {**entries, "reconfiguration": None, "criteria": []}, ticks, rail, name)
+    return Step(MOVE, {**entries, "reconfiguration": None, "criteria": [], "blend": None}, ticks, rail, name)
 
 
 def steps() -> list[Step]:
     """The blocks of the program in order: one for each line of its statements that is not just MOVE LIN."""
-    via = {"via": pose((400, 400, 650)), "angle": None, "turns_through_via": False}
+    via = {"type": "ArcCourse", "via": pose((400, 400, 650)), "angle": None, "turns_through_via": False}
     course = {**via, "via_reconfiguration": None}
     slowest = in_si((-60, -400, -400, -400, -90, -90, -90))
     narrow = {"lower": slowest, "upper": [-bound for bound in slowest]}

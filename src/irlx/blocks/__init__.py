@@ -7,7 +7,7 @@ numbered from 1 in the robot's order.
 
 from irlx.blocks.block import Block, HaltBlock, Origin, PauseBlock
 from irlx.blocks.criterion import CriterionBlock, CriterionChoice, CriterionClause, CriterionParam
-from irlx.blocks.move import ArcCourse, JointTarget, MotionLaw, MoveBlock, MoveKind, PoseTarget
+from irlx.blocks.move import ArcCourse, Blend, MotionLaw, MoveBlock, MoveKind, PathCourse, Profile
 from irlx.blocks.options import (
     CyclicBlock,
     FreezeBlock,
@@ -28,6 +28,8 @@ from irlx.blocks.questions import (
 )
 from irlx.blocks.reconfigure import ReconfigureBlock
 from irlx.blocks.signal import InputBlock, Port, SignalBlock, SignalKind, WaitBlock
+from irlx.blocks.targets import JointIncrement, JointTarget, PoseIncrement, PoseTarget, Target
+from irlx.blocks.tool import ToolBlock, WeightsBlock
 
 __all__ = [
     "ArcCourse",
@@ -38,6 +40,7 @@ __all__ = [
     "AskPose",
     "AskPosture",
     "AskPostureOf",
+    "Blend",
     "Block",
     "CriterionBlock",
     "CriterionChoice",
@@ -47,6 +50,7 @@ __all__ = [
     "FreezeBlock",
     "HaltBlock",
     "InputBlock",
+    "JointIncrement",
     "JointRange",
     "JointTarget",
     "LimitClause",
@@ -56,12 +60,18 @@ __all__ = [
     "MoveBlock",
     "MoveKind",
     "Origin",
+    "PathCourse",
     "PauseBlock",
     "Port",
+    "PoseIncrement",
     "PoseTarget",
+    "Profile",
     "Question",
     "ReconfigureBlock",
     "SignalBlock",
     "SignalKind",
+    "Target",
+    "ToolBlock",
     "WaitBlock",
+    "WeightsBlock",
 ]

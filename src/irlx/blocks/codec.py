@@ -16,10 +16,11 @@ from typing import Any, Union, get_args, get_origin, get_type_hints
 
 from irlx.blocks.block import Block, HaltBlock, PauseBlock
 from irlx.blocks.criterion import CriterionBlock
-from irlx.blocks.move import MoveBlock
+from irlx.blocks.move import ArcCourse, MoveBlock
 from irlx.blocks.options import CyclicBlock, FreezeBlock, LimitSwitchBlock
 from irlx.blocks.reconfigure import ReconfigureBlock
 from irlx.blocks.signal import InputBlock, SignalBlock, WaitBlock
+from irlx.blocks.tool import ToolBlock, WeightsBlock
 
 BLOCK_TYPES: dict[str, type[Block]] = {
     kind.__name__: kind
@@ -35,9 +36,14 @@ BLOCK_TYPES: dict[str, type[Block]] = {
         SignalBlock,
         InputBlock,
         WaitBlock,
+        ToolBlock,
+        WeightsBlock,
     )
 }
 """Every block there is, by the name that its plain form carries."""
+
+_ONCE_ALONE = {ArcCourse}
+"""Parts that stood where they stand before there was anything else: streams of then do not name them."""
 
 _NOT_FINITE = {"inf", "-inf", "nan"}
 
@@ -164,7 +170,7 @@ def _decode_choice(options: tuple[type, ...], value: object, where: str) -> Any:
     rest = dict(value) if isinstance(value, dict) else {}
     name = rest.pop("type", None)
     for option in options:
-        if option.__name__ == name:
+        if option.__name__ == name or (name is None and isinstance(value, dict) and option in _ONCE_ALONE):
             return _dataclass_from(option, rest, where)
     known = ", ".join(option.__name__ for option in options)
     raise BlockFormError(f"{_join(where, 'type')}: {name!r} is none of {known}")

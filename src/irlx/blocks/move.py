@@ -8,6 +8,7 @@ from enum import Enum
 from irlx.blocks.block import Block
 from irlx.blocks.criterion import CriterionClause
 from irlx.blocks.options import LimitClause
+from irlx.blocks.targets import JointTarget, Target
 
 
 class MoveKind(str, Enum):
@@ -16,26 +17,14 @@ class MoveKind(str, Enum):
     PTP = "PTP"
     LIN = "LIN"
     CIRCLE = "CIRCLE"
+    SPLINE = "SPLINE"
 
 
-@dataclass(frozen=True)
-class PoseTarget:
-    """Pose of the tool in a named frame.
+class Profile(str, Enum):
+    """Shape of a motion's time law: constant acceleration, or acceleration that jerk leads in and out."""
 
-    `position` in m; `orientation` as unit quaternion (x, y, z, w), or None to keep the orientation
-    that the tool has at the start of the move.
-    """
-
-    position: tuple[float, float, float]
-    orientation: tuple[float, float, float, float] | None
-    frame: str = "R_BASE"
-
-
-@dataclass(frozen=True)
-class JointTarget:
-    """Posture: one value a joint, rad or m."""
-
-    values: tuple[float, ...]
+    TRAPEZOID = "TRAPEZOID"
+    S_CURVE = "S_CURVE"
 
 
 @dataclass(frozen=True)
@@ -48,10 +37,36 @@ class ArcCourse:
     way to `via`, beside the move's own `reconfiguration`.
     """
 
-    via: PoseTarget | JointTarget
+    via: Target
     angle: float | None = None
     turns_through_via: bool = False
     via_reconfiguration: JointTarget | None = None
+
+
+@dataclass(frozen=True)
+class PathCourse:
+    """The points that a LIN or SPLINE along a PATH runs through before its target.
+
+    A LIN goes straight from point to point, and round the points by the move's `blend`; a SPLINE is one
+    smooth curve through all of them. `reconfigurations`: none, or the posture to be drawn to at each of them,
+    beside the move's own `reconfiguration` at its target.
+    """
+
+    points: tuple[Target, ...]
+    reconfigurations: tuple[JointTarget, ...] = ()
+
+
+@dataclass(frozen=True)
+class Blend:
+    """How a move passes its target on the way to the next one, instead of stopping there.
+
+    `distance` (m, C_CP) of moves of the tool: how far from the target the path leaves and joins the
+    programmed ones; None: no farther than the programmed speed needs (C_PASS). `share` (C_PTP) of a PTP: the
+    same as a part 0..1 of half the shorter of both ways in joint space; None: all of it.
+    """
+
+    distance: float | None = None
+    share: float | None = None
 
 
 @dataclass(frozen=True)
@@ -59,7 +74,9 @@ class MotionLaw:
     """Upper bounds of the programmed motion, latched when the statement ran.
 
     `speed` m/s, `acc` m/s2, `speed_ori` rad/s, `acc_ori` rad/s2; `speed_ptp` and `acc_ptp` as
-    fractions of the joints' own limits; `duration` in s where the program asks for one.
+    fractions of the joints' own limits; `duration` in s where the program asks for one. `jerk` m/s3 leads
+    the acceleration of an S curve in and out. `override` in 0..1 scales time: the motion takes 1/override
+    of its time.
     """
 
     speed: float
@@ -69,21 +86,45 @@ class MotionLaw:
     speed_ptp: float = 1.0
     acc_ptp: float = 1.0
     duration: float | None = None
+    profile: Profile = Profile.TRAPEZOID
+    jerk: float | None = None
+    override: float = 1.0
 
 
 @dataclass(frozen=True, kw_only=True)
 class MoveBlock(Block):
-    """One move of the tool (LIN, CIRCLE) or of the joints (PTP) to a target; a CIRCLE has a `course`.
+    """One move of the tool (LIN, CIRCLE, SPLINE) or of the joints (PTP) to a target.
 
+    A CIRCLE has an `ArcCourse`, a move along a PATH a `PathCourse`. With `blend` it passes its target where
+    the next move allows it, and the inner points of its own path.
     `reconfiguration`: posture to be drawn to on the way, the target's pose being kept (of a CIRCLE with a
     posture for its via point: on the way from there); the cyclic option is off for such a move. `criteria`
     are added for this move alone.
     """
 
     kind: MoveKind
-    target: PoseTarget | JointTarget
+    target: Target
     law: MotionLaw
     limits: tuple[LimitClause, ...] = ()
-    course: ArcCourse | None = None
+    course: ArcCourse | PathCourse | None = None
     reconfiguration: JointTarget | None = None
     criteria: tuple[CriterionClause, ...] = ()
+    blend: Blend | None = None
+
+    @property
+    def arc(self) -> ArcCourse | None:
+        """The course of a CIRCLE, None of all others."""
+        return self.course if isinstance(self.course, ArcCourse) else None
+
+    @property
+    def path(self) -> PathCourse | None:
+        """The course of a move along a PATH, None of all others."""
+        return self.course if isinstance(self.course, PathCourse) else None
+
+    @property
+    def targets(self) -> tuple[Target, ...]:
+        """All that the move runs through in order: via point of a CIRCLE, points of a PATH, the target."""
+        if self.course is None:
+            return (self.target,)
+        inner = (self.course.via,) if isinstance(self.course, ArcCourse) else self.course.points
+        return (*inner, self.target)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from irlx.blocks.block import Block
-from irlx.blocks.move import JointTarget, MotionLaw
+from irlx.blocks.move import MotionLaw
+from irlx.blocks.targets import JointTarget
 
 
 @dataclass(frozen=True, kw_only=True)

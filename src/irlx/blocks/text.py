@@ -8,10 +8,12 @@ from math import degrees
 
 from irlx.blocks.block import Block, HaltBlock, PauseBlock
 from irlx.blocks.criterion import CriterionBlock, CriterionChoice
-from irlx.blocks.move import JointTarget, MotionLaw, MoveBlock, MoveKind, PoseTarget
+from irlx.blocks.move import Blend, MotionLaw, MoveBlock, MoveKind, PathCourse, Profile
 from irlx.blocks.options import CyclicBlock, FreezeBlock, JointRange, LimitKind, LimitSwitchBlock
 from irlx.blocks.reconfigure import ReconfigureBlock
 from irlx.blocks.signal import InputBlock, Port, SignalBlock, SignalKind, WaitBlock
+from irlx.blocks.targets import JointIncrement, JointTarget, PoseIncrement, Target
+from irlx.blocks.tool import ToolBlock, WeightsBlock
 
 NEGLIGIBLE = 1e-12
 """Numbers smaller than this print as 0: they are what sin(180 degrees) leaves behind."""
@@ -79,10 +81,21 @@ def _signal(port: Port, value: float) -> str:
 @_words.register
 def _(block: MoveBlock, joint_units: Sequence[str]) -> str:
     words = [f"MOVE {block.kind.value}", *_way(block, joint_units), _law(block.kind, block.law)]
+    words += [] if block.blend is None else [_blend(block.kind, block.blend)]
     words += [f"WITH {_SWITCH[clause.kind]} {_range(clause.range, joint_units)}" for clause in block.limits]
     words += _postures(block, joint_units)
     words += [f"WITH CRITERION {_criterion(clause.choice)}" for clause in block.criteria]
     return " ".join(words)
+
+
+@_words.register
+def _(block: ToolBlock, joint_units: Sequence[str]) -> str:
+    return f"TOOL {_group(map(_mm, block.position))} {_group(map(number, block.orientation))} in the tip"
+
+
+@_words.register
+def _(block: WeightsBlock, joint_units: Sequence[str]) -> str:
+    return f"WEIGHTS {_group(map(number, block.weights))}"
 
 
 @_words.register
@@ -119,10 +132,16 @@ def _criterion(choice: CriterionChoice) -> str:
     return " ".join([choice.name, f"weight {number(choice.weight)}", *params])
 
 
-def _target(target: PoseTarget | JointTarget, joint_units: Sequence[str]) -> str:
+def _target(target: Target, joint_units: Sequence[str]) -> str:
     if isinstance(target, JointTarget):
         return f"joints {_joint_values(target.values, joint_units)}"
+    if isinstance(target, JointIncrement):
+        return f"on by joints {_joint_values(target.values, joint_units)}"
     position = _group(map(_mm, target.position))
+    if isinstance(target, PoseIncrement):
+        if target.orientation is None:
+            return f"on by {position} in {target.frame}"
+        return f"on by {position} {_group(map(number, target.orientation))} in the tool"
     orientation = "kept" if target.orientation is None else _group(map(number, target.orientation))
     return f"{position} {orientation} in {target.frame}"
 
@@ -130,6 +149,8 @@ def _target(target: PoseTarget | JointTarget, joint_units: Sequence[str]) -> str
 def _way(block: MoveBlock, joint_units: Sequence[str]) -> list[str]:
     """Words for via point, target and travel of a move."""
     words = [f"to {_target(block.target, joint_units)}"]
+    if isinstance(block.course, PathCourse):
+        return [f"through {_target(point, joint_units)}" for point in block.course.points] + words
     if block.course is not None:
         words.insert(0, f"via {_target(block.course.via, joint_units)}")
         words += ["turning through via"] if block.course.turns_through_via else []
@@ -139,8 +160,12 @@ def _way(block: MoveBlock, joint_units: Sequence[str]) -> list[str]:
 
 def _postures(block: MoveBlock, joint_units: Sequence[str]) -> list[str]:
     """Words for the postures that a move is drawn to; with one for the via point both are named."""
-    via = None if block.course is None else block.course.via_reconfiguration
     end = block.reconfiguration
+    if isinstance(block.course, PathCourse):
+        all_of_them = [*block.course.reconfigurations, *([] if end is None else [end])]
+        words = [_joint_values(posture.values, joint_units) for posture in all_of_them]
+        return ["WITH RECONFIGURATION", *words] if words else []
+    via = None if block.course is None else block.course.via_reconfiguration
     words = [] if via is None else [f"via {_joint_values(via.values, joint_units)}"]
     if end is not None:
         words.append(f"{'to ' if words else ''}{_joint_values(end.values, joint_units)}")
@@ -158,7 +183,20 @@ def _law(kind: MoveKind, law: MotionLaw) -> str:
         ]
     if law.duration is not None:
         parts.append(f"time {number(law.duration)} s")
+    if law.profile is not Profile.TRAPEZOID:
+        parts.append(f"profile {law.profile.value}")
+    if law.jerk is not None:
+        parts.append(f"jerk {_mm(law.jerk)} mm/s3")
+    if law.override != 1.0:
+        parts.append(f"override {number(law.override * 100)} %")
     return " ".join(parts)
+
+
+def _blend(kind: MoveKind, blend: Blend) -> str:
+    """Words for how a move passes its target."""
+    if kind is MoveKind.PTP:
+        return "passing" if blend.share is None else f"passing by {number(blend.share * 100)} %"
+    return "passing" if blend.distance is None else f"passing by {_mm(blend.distance)} mm"
 
 
 def _range(bounds: JointRange, joint_units: Sequence[str]) -> str:

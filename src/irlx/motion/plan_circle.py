@@ -22,7 +22,7 @@ def circle_path(block: MoveBlock, start_rotation: Array, start_position: Array, 
     only. Raises MotionError: IRL427 for points that coincide, IRL428 for points on a line, IRL429 where
     the via orientation counts and the travel does not come to it.
     """
-    course = block.course
+    course = block.arc
     if course is None:
         raise TypeError("a CIRCLE has a course")
     via_rotation, via = target_pose(course.via, start_rotation)

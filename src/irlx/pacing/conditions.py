@@ -18,8 +18,8 @@ Array = NDArray[np.float64]
 
 
 def check_targets(block: MoveBlock, kinematics: Kinematics, q: Array, place: Place) -> None:
-    """`check_can_move` for target and via point of a LIN or CIRCLE."""
-    for target in (block.target, None if block.course is None else block.course.via):
+    """`check_can_move` for all targets of a move along a path."""
+    for target in block.targets:
         if isinstance(target, PoseTarget):
             check_can_move(target, kinematics, q, place)
 

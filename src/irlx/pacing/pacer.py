@@ -20,6 +20,7 @@ from irlx.blocks import (
     Block,
     CriterionBlock,
     FreezeBlock,
+    JointIncrement,
     JointTarget,
     LimitSwitchBlock,
     MoveBlock,
@@ -51,7 +52,7 @@ from irlx.pacing.impossible import (
 from irlx.pacing.inputs import Inputs, answer_of_inputs
 from irlx.pacing.options import LimitsInForce, Options, SwitchBlock, limits_in_force
 from irlx.pacing.path_motion import Failure, PacedPath, PathMotion, pace_path
-from irlx.pacing.posed import posed
+from irlx.pacing.posed import pose_target, posed, posture_target
 from irlx.pacing.posture_left import (
     JOINTS_GIVEN,
     NO_WAY,
@@ -216,7 +217,7 @@ class Pacer:
         place = self._locate(block.origin)
         rotation, position = self._setup.kinematics.tool_pose(self.q)
         posture = self._asked_posture(block, in_force, place)
-        told = posed(block, self._setup.kinematics)
+        told = posed(block, self._setup.kinematics, (rotation, position), self.q)
         check_targets(told, self._setup.kinematics, self.q, place)
         plan = plan_path(told, rotation, position, self._setup.dt, place)
         if plan.ticks == 0:
@@ -263,8 +264,9 @@ class Pacer:
         A CIRCLE with ANGLE does not end at its target: it is not drawn to the target's posture.
         """
         posture = None
-        if isinstance(block.target, JointTarget) and (block.course is None or block.course.angle is None):
-            posture = np.array(block.target.values)
+        given = posture_target(block.target, self.q)
+        if given is not None and (block.arc is None or block.arc.angle is None):
+            posture = np.array(given.values)
             check_joint_target(posture, self._robot, in_force.limits, place)
         if block.reconfiguration is not None:
             posture = self._konf(block.reconfiguration, in_force, place)
@@ -277,7 +279,7 @@ class Pacer:
 
         None where none is asked for, or a travel by ANGLE does not come to the via point.
         """
-        asked = None if block.course is None else block.course.via_reconfiguration
+        asked = None if block.arc is None else block.arc.via_reconfiguration
         share = plan.path.share_at_via if isinstance(plan.path, Arc) else None
         return None if asked is None or share is None else (share, self._konf(asked, in_force, place))
 
@@ -357,7 +359,7 @@ class Pacer:
         names = self._robot.joint_names
         plan = plan_joint_line(self.q, end, block.law, in_force.limits, names, self._setup.dt, place)
         if block.reconfiguration is not None:
-            why = JOINTS_GIVEN if isinstance(block.target, JointTarget) else ON_THE_WAY
+            why = JOINTS_GIVEN if isinstance(block.target, JointTarget | JointIncrement) else ON_THE_WAY
             left = np.array(block.reconfiguration.values) - end
             self.warnings += posture_left(left, why, self._robot, place)
         if plan.ticks == 0:
@@ -384,11 +386,14 @@ class Pacer:
 
     def _end_posture(self, block: MoveBlock, in_force: LimitsInForce, place: Place) -> Array:
         """Posture at which a PTP ends: as given, or the nearest one that reaches the pose."""
-        if isinstance(block.target, JointTarget):
-            return np.array(block.target.values)
+        given = posture_target(block.target, self.q)
+        if given is not None:
+            return np.array(given.values)
         konf = block.reconfiguration
         near = None if konf is None else self._konf(konf, in_force, place)
-        return self._posture_of(block.target, near, in_force, place)
+        pose = pose_target(block.target, self._setup.kinematics.tool_pose(self.q))
+        assert pose is not None
+        return self._posture_of(pose, near, in_force, place)
 
     def _posture_of(
         self, target: PoseTarget, near: Array | None, in_force: LimitsInForce, place: Place

@@ -1,30 +1,88 @@
-"""Targets that are postures, as the poses that the tool has in them."""
+"""Targets of moves as poses of the tool: postures by the kinematics, increments from the start."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from irlx.blocks import JointTarget, MoveBlock, PoseTarget
+from irlx.blocks import ArcCourse, JointIncrement, JointTarget, MoveBlock, PoseIncrement, PoseTarget, Target
 from irlx.robot.kinematics import Kinematics
 
-
-def posed(block: MoveBlock, kinematics: Kinematics) -> MoveBlock:
-    """The block of a LIN or CIRCLE with poses for target and via point."""
-    course = block.course
-    if course is not None:
-        course = replace(course, via=_as_pose(course.via, kinematics))
-    return replace(block, target=_as_pose(block.target, kinematics), course=course)
+Array = NDArray[np.float64]
+Pose = tuple[Array, Array]
+"""Rotation (3, 3) and position (3,) m of the tool in the world."""
 
 
-def _as_pose(target: PoseTarget | JointTarget, kinematics: Kinematics) -> PoseTarget:
+def posed(block: MoveBlock, kinematics: Kinematics, start: Pose, q: Array) -> MoveBlock:
+    """The block of a move along a path with poses for all that it runs through.
+
+    The move starts at the pose `start`, the robot in posture `q` (n,). Points of a PATH count their
+    increments from the point before, a CIRCLE both from where it starts.
+    """
+    if block.path is not None:
+        points, last = [], start
+        for target in block.targets:
+            pose = _as_pose(target, kinematics, last, q)
+            points.append(pose)
+            last = _pose_of(pose, last)
+        course = replace(block.path, points=tuple(points[:-1]))
+        return replace(block, target=points[-1], course=course)
+    target = _as_pose(block.target, kinematics, start, q)
+    if isinstance(block.course, ArcCourse):
+        course_with_pose = replace(block.course, via=_as_pose(block.course.via, kinematics, start, q))
+        return replace(block, target=target, course=course_with_pose)
+    return replace(block, target=target)
+
+
+def posture_target(target: Target, q: Array) -> JointTarget | None:
+    """The posture that a target gives, counted from `q` (n,) where it is an increment; None for a pose."""
+    if isinstance(target, JointTarget):
+        return target
+    if isinstance(target, JointIncrement):
+        return JointTarget(tuple(float(value) for value in q + np.array(target.values)))
+    return None
+
+
+def pose_target(target: Target, start: Pose) -> PoseTarget | None:
+    """The pose that a target gives, counted from `start` where it is an increment; None for a posture."""
     if isinstance(target, PoseTarget):
         return target
-    rotation, position = kinematics.tool_pose(np.array(target.values))
+    return _moved(target, start) if isinstance(target, PoseIncrement) else None
+
+
+def _as_pose(target: Target, kinematics: Kinematics, start: Pose, q: Array) -> PoseTarget:
+    given = pose_target(target, start)
+    if given is not None:
+        return given
+    posture = posture_target(target, q)
+    assert posture is not None
+    rotation, position = kinematics.tool_pose(np.array(posture.values))
+    return PoseTarget(_floats3(position), _quaternion(rotation))
+
+
+def _moved(target: PoseIncrement, start: Pose) -> PoseTarget:
+    rotation, position = start
+    shift = np.array(target.position)
+    if target.orientation is None:
+        return PoseTarget(_floats3(position + shift), None, target.frame)
+    turned = rotation @ Rotation.from_quat(target.orientation).as_matrix()
+    return PoseTarget(_floats3(position + rotation @ shift), _quaternion(turned))
+
+
+def _pose_of(target: PoseTarget, before: Pose) -> Pose:
+    rotation = before[0]
+    if target.orientation is not None:
+        rotation = np.asarray(Rotation.from_quat(target.orientation).as_matrix())
+    return rotation, np.array(target.position)
+
+
+def _floats3(vector: Array) -> tuple[float, float, float]:
+    return float(vector[0]), float(vector[1]), float(vector[2])
+
+
+def _quaternion(rotation: Array) -> tuple[float, float, float, float]:
     x, y, z, w = Rotation.from_matrix(rotation).as_quat()
-    return PoseTarget(
-        (float(position[0]), float(position[1]), float(position[2])),
-        (float(x), float(y), float(z), float(w)),
-    )
+    return float(x), float(y), float(z), float(w)

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from irlx.blocks import JointTarget, PoseTarget
+from irlx.blocks import JointTarget, PoseTarget, Target
 from irlx.robot.description import RobotDescription
 from irlx.robot.relation import JointRelation
 from irlx.streams.joint_stream import Floats
@@ -52,13 +52,13 @@ class Evidence:
         """Joint values (n,) of a row in which a block ends."""
         return np.array(self.outline.posture(row))
 
-    def target_pose(self, target: PoseTarget | JointTarget, start: Pose) -> Pose | None:
+    def target_pose(self, target: Target, start: Pose) -> Pose | None:
         """Pose of a target or via point of a move that starts at a pose; None: its frame is not known."""
-        if not isinstance(target, PoseTarget):
+        if isinstance(target, JointTarget):
             assert self.robot is not None
             positions, rotations = forward(self.robot, np.array([target.values], dtype=np.float64))
             return positions[0], rotations[0]
-        if target.frame != BASE_FRAME:
+        if not isinstance(target, PoseTarget) or target.frame != BASE_FRAME:
             return None
         if target.orientation is None:
             return np.array(target.position), start[1]

@@ -10,11 +10,13 @@ from irlx.blocks import (
     Block,
     FreezeBlock,
     InputBlock,
+    JointIncrement,
     JointRange,
     JointTarget,
     LimitSwitchBlock,
     MoveBlock,
     MoveKind,
+    PoseIncrement,
     PoseTarget,
     ReconfigureBlock,
     SignalBlock,
@@ -144,17 +146,17 @@ def _fits(kind: SignalKind, value: float) -> bool:
 
 def _wrong_targets(block: MoveBlock, joints: int) -> str:
     """Why target and course of a move do not fit a robot of n joints or its kind, or ''."""
-    course = block.course
+    course = block.arc
     if (course is not None) is not (block.kind is MoveKind.CIRCLE):
         return f"a {block.kind.value} {'needs a' if course is None else 'has no'} course"
     if course is not None and course.angle is not None and not 0.0 < abs(course.angle) < np.inf:
         return f"it cannot turn by {course.angle} rad"
     if course is not None and course.via_reconfiguration is not None and block.reconfiguration is None:
         return "it has a posture for its via point and none for its end"
-    for target in (block.target,) if course is None else (course.via, block.target):
-        if isinstance(target, JointTarget) and len(target.values) != joints:
+    for target in block.targets:
+        if isinstance(target, JointTarget | JointIncrement) and len(target.values) != joints:
             return f"its target has {len(target.values)} values for {joints} joints"
-        if isinstance(target, PoseTarget) and target.orientation is not None:
+        if isinstance(target, PoseTarget | PoseIncrement) and target.orientation is not None:
             length = float(np.linalg.norm(target.orientation))
             if not abs(length - 1.0) <= UNIT_LENGTH:
                 return f"its orientation is a quaternion of length {length:.6g}"
@@ -167,5 +169,6 @@ def _postures_beside(block: Block) -> list[JointTarget]:
         return [block.target]
     if not isinstance(block, MoveBlock):
         return []
-    via = None if block.course is None else block.course.via_reconfiguration
-    return [posture for posture in (via, block.reconfiguration) if posture is not None]
+    inner = () if block.path is None else block.path.reconfigurations
+    via = None if block.arc is None else block.arc.via_reconfiguration
+    return [posture for posture in (via, *inner, block.reconfiguration) if posture is not None]

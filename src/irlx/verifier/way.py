@@ -65,7 +65,7 @@ def course_of(evidence: Evidence, move: MoveRows, start: Pose) -> Course:
         return Course(move, None, None)
     if move.block.kind is MoveKind.PTP:
         return Course(move, None, target)
-    course = move.block.course
+    course = move.block.arc
     if course is None:
         return Course(move, LineWay(start, target), target)
     return _arc(evidence, move, course, start, target)

@@ -21,6 +21,8 @@ BLOCK_CODES = {
     "FreezeBlock": 420,
     "CyclicBlock": 430,
     "CriterionBlock": 440,
+    "ToolBlock": 450,
+    "WeightsBlock": 460,
     "SignalBlock": 500,
     "InputBlock": 510,
     "WaitBlock": 520,
