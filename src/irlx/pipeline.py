@@ -26,8 +26,9 @@ from irlx.interpreter.interpret import MAX_STEPS, Interpretation
 from irlx.pacing.explanation import TickExplanation
 from irlx.pacing.explanation import explain_tick as explain_row
 from irlx.pacing.inputs import InputFunction, Inputs
-from irlx.pacing.pacer import Pacer, PacingSetup
+from irlx.pacing.pacer import Pacer
 from irlx.pacing.rows import MotionRows
+from irlx.pacing.situation import PacingSetup
 from irlx.program import Program, ProgramError, cell_path, load
 from irlx.promises import CONDITION, LONGEST_TICK, SHORTEST_TICK
 from irlx.report.recording import Recording

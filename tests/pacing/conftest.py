@@ -23,7 +23,8 @@ from irlx.blocks import (
     PoseTarget,
 )
 from irlx.diagnostics import Place, SourceText, Span
-from irlx.pacing.pacer import Pacer, PacingSetup
+from irlx.pacing.pacer import Pacer
+from irlx.pacing.situation import PacingSetup
 from irlx.robot.description import Joint, JointKind, RobotDescription
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits

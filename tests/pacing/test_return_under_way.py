@@ -10,7 +10,8 @@ import pytest
 
 from irlx.blocks import CyclicBlock, JointTarget, MotionLaw, MoveBlock, MoveKind, Origin, PoseTarget
 from irlx.diagnostics import Place, SourceText, Span
-from irlx.pacing.pacer import Pacer, PacingSetup
+from irlx.pacing.pacer import Pacer
+from irlx.pacing.situation import PacingSetup
 from irlx.promises import CLOSURE
 from irlx.robot.limits import JointLimits
 from machines import machine

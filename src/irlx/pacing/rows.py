@@ -64,3 +64,8 @@ class MotionRows:
 
     def __len__(self) -> int:
         return int(self.q.shape[0])
+
+
+def held(rows: Array) -> Array:
+    """Rows with the last one repeated: the hold tick of a stop."""
+    return np.concatenate([rows, rows[-1:]])

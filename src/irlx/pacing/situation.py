@@ -1,0 +1,91 @@
+"""What a motion finds when it begins: the robot, where it stands, and what is in force."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from math import inf
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irlx.blocks import LimitClause, Origin
+from irlx.diagnostics import Diagnostic, Place
+from irlx.pacing.demand import DemandModifier
+from irlx.pacing.inputs import Inputs
+from irlx.pacing.options import LimitsInForce, Options, limits_in_force
+from irlx.pacing.slowdown.model import Model
+from irlx.robot.description import RobotDescription
+from irlx.robot.kinematics import Kinematics
+from irlx.robot.limits import JointLimits
+from irlx.transform.qp.proxqp import ProxQpSolver
+from irlx.transform.tick import TickSolver
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class PacingSetup:
+    """The robot as a run finds it: model, own limits, weights (n,), start posture (n,), tick in s.
+
+    A move may take `max_slow` times as long as programmed, and a tick; `inputs` are what the world says.
+    """
+
+    kinematics: Kinematics
+    limits: JointLimits
+    weights: Array
+    start: Array
+    dt: float
+    modifiers: Sequence[DemandModifier] = ()
+    max_slow: float = inf
+    inputs: Inputs = field(default_factory=Inputs)
+
+
+@dataclass(frozen=True)
+class Situation:
+    """The robot at rest in posture `q` (n,) at a tick, the options in force, and what solves its ticks.
+
+    `warnings` collects what is found on the way, also before an error.
+    """
+
+    setup: PacingSetup
+    q: Array
+    tick: int
+    options: Options
+    solver: TickSolver
+    qp: ProxQpSolver
+    locate: Callable[[Origin], Place]
+    warnings: list[Diagnostic]
+
+    @property
+    def kinematics(self) -> Kinematics:
+        """The robot's model."""
+        return self.setup.kinematics
+
+    @property
+    def robot(self) -> RobotDescription:
+        """The robot as plain data."""
+        return self.setup.kinematics.description
+
+    @property
+    def dt(self) -> float:
+        """Length of a tick, s."""
+        return self.setup.dt
+
+    @property
+    def free(self) -> NDArray[np.bool_]:
+        """The joints (n,) that are not frozen."""
+        return self.options.free_joints(self.q.size)
+
+    @property
+    def pose(self) -> tuple[Array, Array]:
+        """Rotation (3, 3) and position (3,) m of the tool in the world."""
+        return self.kinematics.tool_pose(self.q)
+
+    def in_force(self, clauses: Iterable[LimitClause] = ()) -> LimitsInForce:
+        """Joint limits of a motion with its own clauses."""
+        return limits_in_force(self.setup.limits, self.options, clauses)
+
+    def model(self, in_force: LimitsInForce) -> Model:
+        """What planning needs to know of the robot."""
+        return Model(self.kinematics, in_force.limits, self.setup.weights, self.free)
