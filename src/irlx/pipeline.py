@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf
 from pathlib import Path, PurePath
@@ -23,11 +23,12 @@ from irlx.cell.setting import setting_of
 from irlx.diagnostics import Diagnostic, IrlxError, Place, Span, report
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.interpreter.interpret import MAX_STEPS, Interpretation
+from irlx.pacing.executed import Executed
 from irlx.pacing.explanation import TickExplanation
 from irlx.pacing.explanation import explain_tick as explain_row
 from irlx.pacing.inputs import InputFunction, Inputs
+from irlx.pacing.lookahead import Lookahead
 from irlx.pacing.pacer import Pacer
-from irlx.pacing.rows import MotionRows
 from irlx.pacing.situation import PacingSetup
 from irlx.program import Program, ProgramError, cell_path, load
 from irlx.promises import CONDITION, LONGEST_TICK, SHORTEST_TICK
@@ -127,15 +128,6 @@ def _loaded(path: PathLike, cell: PathLike | None) -> Program:
         raise
 
 
-@dataclass(frozen=True)
-class Executed:
-    """A block, the tick whose row stood when it began, and the rows it became (None for none)."""
-
-    block: Block
-    tick: int
-    rows: MotionRows | None
-
-
 class Execution:
     """One run in progress: a program's blocks, and the pacer that executes them."""
 
@@ -154,12 +146,10 @@ class Execution:
 
     def __iter__(self) -> Iterator[Executed]:
         """Execute the program block by block. Raises IrlxError where it cannot go on (IRL090: by a fault)."""
-        source = self._blocks(self._pacer.answer)
+        source = self._carried_out()
         while True:
             try:
-                block = next(source)
-                tick, settled = self._pacer.tick, self._pacer.settled(block)
-                executed = Executed(settled, tick, self._pacer.execute(settled))
+                executed = next(source)
             except StopIteration:
                 return
             except IrlxError:
@@ -171,37 +161,64 @@ class Execution:
                 raise IrlxError(report("IRL090", cause=f"{type(error).__name__}: {error}")) from error
             yield executed
 
+    def _carried_out(self) -> Iterator[Executed]:
+        """What becomes of the blocks; the program runs ahead of them while its moves pass their targets."""
+        pacer, ahead = self._pacer, Lookahead(self._locate, self._pacer.warnings)
+        source, reply = self._interpreted(), None
+        while True:
+            try:
+                item = source.send(reply)
+            except StopIteration:
+                yield from self._all(ahead.stop(None, "the program ends"))
+                return
+            except IrlxError:
+                yield from self._all(ahead.stop(None, "the program cannot go on"))
+                raise
+            reply = None
+            if isinstance(item, Question):
+                yield from self._all(ahead.before(item))
+                reply = pacer.answer(item)
+            else:
+                yield from self._all(ahead.take(item))
+
+    def _all(self, groups: Sequence[tuple[Block, ...]]) -> Iterator[Executed]:
+        for group in groups:
+            yield from self._pacer.carry_out(group)
+
     def blocks(self) -> Iterator[Block]:
         """Blocks of the program; nothing moves until it asks for the posture that its moves lead to."""
         waiting: list[Block] = []
-
-        def answer(question: Question) -> tuple[float, ...]:
-            for block in waiting:
-                self._pacer.execute(self._pacer.settled(block))
-            waiting.clear()
-            return self._pacer.answer(question)
-
-        for block in self._blocks(answer):
-            yield block
-            waiting.append(block)
-
-    def _blocks(self, answer: Callable[[Question], tuple[float, ...]]) -> Iterator[Block]:
-        """Blocks as the interpreter yields them, its questions answered on the way."""
-        job, program = self.job, self.job.program
-        setting = setting_of(job.cell)
-        ready = Interpretation(
-            program.tree, program.source, setting, program.data_lists, program.modules, job.max_steps
-        )
-        self._interpretation, source = ready, ready.run()
-        reply = None
+        source, reply = self._interpreted(), None
         while True:
             try:
                 item = source.send(reply)
             except StopIteration:
                 return
-            reply = answer(item) if isinstance(item, Question) else None
-            if isinstance(item, Block):
+            reply = None
+            if isinstance(item, Question):
+                self._move_to_the_end_of(waiting)
+                waiting.clear()
+                reply = self._pacer.answer(item)
+            else:
                 yield item
+                waiting.append(item)
+
+    def _move_to_the_end_of(self, blocks: Sequence[Block]) -> None:
+        """Carry out blocks for their effect on where the robot stands."""
+        ahead = Lookahead(self._locate, [])
+        groups = [group for block in blocks for group in ahead.take(block)]
+        for _ in self._all([*groups, *ahead.stop(None, "")]):
+            pass
+
+    def _interpreted(self) -> Generator[Block | Question, tuple[float, ...] | None, None]:
+        """The program under way: its blocks and questions."""
+        job, program = self.job, self.job.program
+        setting = setting_of(job.cell)
+        ready = Interpretation(
+            program.tree, program.source, setting, program.data_lists, program.modules, job.max_steps
+        )
+        self._interpretation = ready
+        return ready.run()
 
     def write_data(self) -> list[Diagnostic]:
         """Write values that the program changed back to its data lists, each file whole or not at all.
@@ -222,15 +239,15 @@ class Execution:
                     file.write(new.text.encode("utf-8"))
         return warnings
 
-    def explain(self, executed: Executed, start: Array, tick: int) -> TickExplanation | None:
-        """Explanation of a tick, None where it is no row of this block; `start` (n,) the row before it."""
+    def explain(self, executed: Executed, before: Array, tick: int) -> TickExplanation | None:
+        """Explanation of a tick, None where it is no row of this block; `before` (2, n): the rows before."""
         rows = executed.rows
         if rows is None or not rows.first_tick <= tick < rows.first_tick + len(rows):
             return None
         cell = self.job.cell
         limits = rows.limits or cell.limits
         dt = self.job.tick_ns / 1e9
-        return explain_row(rows, start, tick, limits, cell.weights, self.kinematics, dt)
+        return explain_row(rows, before, tick, limits, cell.weights, self.kinematics, dt)
 
     def recording(self) -> Recording:
         """A recording that begins at the cell's start posture."""
@@ -335,8 +352,8 @@ def execute(execution: Execution, progress: Progress | None = None, explain_tick
     try:
         for executed in execution:
             if explain_tick is not None and explanation is None:
-                explanation = execution.explain(executed, recording.last_posture, explain_tick)
-            recording.add(executed.block, executed.tick, executed.rows)
+                explanation = execution.explain(executed, recording.last_postures, explain_tick)
+            recording.add(executed)
             if progress is not None:
                 progress(executed.block, recording.duration)
     except IrlxError as error:
@@ -375,5 +392,5 @@ def _samples(job: Job) -> Iterator[Sample]:
     recording = execution.recording()
     yield from recording.take_samples()
     for executed in execution:
-        recording.add(executed.block, executed.tick, executed.rows)
+        recording.add(executed)
         yield from recording.take_samples()

@@ -114,21 +114,22 @@ class TickExplanation:
 
 def explain_tick(
     rows: MotionRows,
-    start: Array,
+    rows_before: Array,
     tick: int,
     limits: JointLimits,
     weights: Array,
     kinematics: Kinematics,
     dt: float,
 ) -> TickExplanation:
-    """Explanation of a tick of a motion from rest at posture `start` (n,).
+    """Explanation of a tick of a motion.
 
-    `limits` in force; `weights` (n,) of least motion.
+    `rows_before` (2, n): the two rows before it, the same twice where it starts at rest; `limits` in force;
+    `weights` (n,) of least motion.
     """
     robot = kinematics.description
     names, prismatic = robot.joint_names, tuple(axis.is_prismatic for axis in robot.axes)
     row = tick - rows.first_tick
-    before = np.vstack([start, start, rows.q])
+    before = np.vstack([rows_before, rows.q])
     step, last_step = before[row + 2] - before[row + 1], before[row + 1] - before[row]
     asked = rows.path.demands if rows.path is not None else ()
     demand = asked[row] if row < len(asked) else None
@@ -171,7 +172,7 @@ def _problem(
 
 def _chosen(path: PathPart, row: int, demand: Demand) -> Criterion:
     """Criterion in force at a row."""
-    return path.term.at(demand.s, demand.s - (path.demands[row - 1].s if row > 0 else 0.0))
+    return path.term.at(demand.s, demand.s - (path.demands[row - 1].s if row > 0 else path.s_before))
 
 
 def _motion(rows: MotionRows) -> str:
@@ -184,7 +185,7 @@ def _motion(rows: MotionRows) -> str:
 def _way_of_pacing(rows: MotionRows, row: int) -> str:
     if isinstance(rows.block, WaitBlock):
         return "the robot stands"
-    if row == len(rows) - 1:
+    if rows.stops and row == len(rows) - 1:
         return "hold tick of a stop"
     if rows.path is None:
         return "row of a motion of the joints"
@@ -197,7 +198,7 @@ def _path_tick(path: PathPart, demand: Demand, length: float) -> PathTick:
     scale = path.angle_per_s if path.is_turn else 1.0
     part = demand.twist[3:] if path.is_turn else demand.twist[:3]
     return PathTick(
-        demand.s * scale,
+        (demand.s - path.begin) * scale,
         length * scale,
         path.is_turn,
         float(np.linalg.norm(part)),

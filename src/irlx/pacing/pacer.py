@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -29,8 +29,10 @@ from irlx.blocks import (
 )
 from irlx.diagnostics import Diagnostic, Place
 from irlx.pacing.answers import answer_of_posture
+from irlx.pacing.executed import Executed
 from irlx.pacing.inputs import answer_of_inputs
 from irlx.pacing.joint_moves import move_joints
+from irlx.pacing.motion import Motion
 from irlx.pacing.options import LimitsInForce, Options, SwitchBlock
 from irlx.pacing.path_moves import move_along_path
 from irlx.pacing.posture_left import posture_left, why_left
@@ -88,13 +90,43 @@ class Pacer:
         """The block as it is executed here: bounds that mean the present posture lie exactly on it."""
         return snapped(block, self.q)
 
+    def carry_out(self, group: Sequence[Block]) -> Iterator[Executed]:
+        """Execute a group of `Lookahead`, block after block.
+
+        Raises PacingError or MotionError with the place of the block; the state stays where it is then.
+        """
+        if len(group) == 1 and not isinstance(group[0], MoveBlock):
+            block, tick = self.settled(group[0]), self.tick
+            yield Executed(block, tick, self.execute(block))
+            return
+        waiting = [self.settled(block) for block in group]
+        begins = True
+        while waiting:
+            first = waiting[0]
+            if not isinstance(first, MoveBlock):
+                yield Executed(waiting.pop(0), self.tick, None)
+                continue
+            motion = self._motion([block for block in waiting if isinstance(block, MoveBlock)])
+            for rows in motion.rows:
+                block = waiting.pop(0)
+                while not isinstance(block, MoveBlock):
+                    yield Executed(block, self.tick, None)
+                    block = waiting.pop(0)
+                tick = self.tick
+                yield Executed(block, tick, self._moved(rows, motion.in_force), begins)
+                begins = True
+            if motion.rest is not None:
+                waiting.insert(0, motion.rest)
+                begins = False
+
     def execute(self, block: Block) -> MotionRows | None:
         """Execute one block; returns the rows of a move (None for a switch or a move of no length).
 
         Raises PacingError or MotionError with the place of the block; the state stays at its start.
         """
         if isinstance(block, MoveBlock):
-            return self._move(block)
+            motion = self._motion([block])
+            return self._moved(motion.rows[0], motion.in_force)
         if isinstance(block, ReconfigureBlock):
             return self._reconfigure(block)
         place = self._locate(block.origin)
@@ -112,7 +144,9 @@ class Pacer:
             self.options = self.options.after(block, self.q)
         return None
 
-    def _move(self, block: MoveBlock) -> MotionRows | None:
+    def _motion(self, moves: list[MoveBlock]) -> Motion:
+        """The first motion from stop to stop that moves become."""
+        block = moves[0]
         for clause in block.limits:
             place = self._locate(clause.origin)
             self.warnings += check_limit(clause, self._robot, self._setup.limits, self.q, place)
@@ -120,8 +154,9 @@ class Pacer:
         in_force = situation.in_force(block.limits)
         # A clause may have let a joint out of the switch that holds again now.
         check_inside(self.q, self._robot, in_force.limits, place)
-        carry_out = move_joints if block.kind is MoveKind.PTP else move_along_path
-        return self._moved(carry_out(situation, block, in_force, place), in_force)
+        if block.kind is MoveKind.PTP:
+            return move_joints(situation, moves, in_force)
+        return move_along_path(situation, moves, in_force)
 
     def _moved(self, rows: MotionRows | None, in_force: LimitsInForce) -> MotionRows | None:
         """The rows of a motion with its limits, the robot now standing at their end."""

@@ -23,6 +23,7 @@ from irlx.pacing.impossible import (
     joint_value,
     slower_than_allowed,
 )
+from irlx.pacing.motion import Motion
 from irlx.pacing.options import LimitsInForce
 from irlx.pacing.path_motion import Failure, PacedPath, PathMotion, pace_path
 from irlx.pacing.posed import posed, posture_target
@@ -44,10 +45,15 @@ _TURN_RULES = 1e3
 """A path that turns by more than this many rad per m is told in angles: its way is next to nothing."""
 
 
-def move_along_path(
+def move_along_path(situation: Situation, moves: Sequence[MoveBlock], in_force: LimitsInForce) -> Motion:
+    """Carry out the first of several moves along paths. Raises PacingError or MotionError at its place."""
+    block = moves[0]
+    return Motion((_moved(situation, block, in_force, situation.locate(block.origin)),), in_force)
+
+
+def _moved(
     situation: Situation, block: MoveBlock, in_force: LimitsInForce, place: Place
 ) -> MotionRows | None:
-    """Carry out a LIN or CIRCLE. Raises PacingError or MotionError at `place`."""
     end = _end_posture(situation, block, in_force, place)
     told = posed(block, situation.kinematics, situation.pose, situation.q)
     check_targets(told, situation.kinematics, situation.q, place)
@@ -57,7 +63,7 @@ def move_along_path(
         return None
     via = _via(situation, block, plan, in_force, place)
     model = situation.model(in_force)
-    wanted = None if end is None else Asked(end, via)
+    wanted = None if end is None else Asked(end, () if via is None else (via,))
     term = _term(situation, block, plan, model, wanted, in_force.limits)
     motion = _motion(situation, plan, term, place)
     paced = pace_path(motion, model, situation.solver)
