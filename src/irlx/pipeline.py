@@ -28,6 +28,7 @@ from irlx.pacing.explanation import TickExplanation
 from irlx.pacing.explanation import explain_tick as explain_row
 from irlx.pacing.inputs import InputFunction, Inputs
 from irlx.pacing.lookahead import Lookahead
+from irlx.pacing.notes import Notes
 from irlx.pacing.pacer import Pacer
 from irlx.pacing.situation import PacingSetup
 from irlx.program import Program, ProgramError, cell_path, load
@@ -163,7 +164,7 @@ class Execution:
 
     def _carried_out(self) -> Iterator[Executed]:
         """What becomes of the blocks; the program runs ahead of them while its moves pass their targets."""
-        pacer, ahead = self._pacer, Lookahead(self._locate, self._pacer.warnings)
+        pacer, ahead = self._pacer, Lookahead(self._locate, self._pacer.notes)
         source, reply = self._interpreted(), None
         while True:
             try:
@@ -205,7 +206,7 @@ class Execution:
 
     def _move_to_the_end_of(self, blocks: Sequence[Block]) -> None:
         """Carry out blocks for their effect on where the robot stands."""
-        ahead = Lookahead(self._locate, [])
+        ahead = Lookahead(self._locate, Notes([]))
         groups = [group for block in blocks for group in ahead.take(block)]
         for _ in self._all([*groups, *ahead.stop(None, "")]):
             pass

@@ -29,6 +29,7 @@ from irlx.blocks import (
 from irlx.diagnostics import Diagnostic, Place, Span
 from irlx.diagnostics.place import SourceText
 from irlx.pacing.lookahead import WINDOW, Lookahead
+from irlx.pacing.notes import Notes
 
 pytestmark = pytest.mark.req("LANG-54")
 
@@ -53,7 +54,7 @@ def signal(number: int) -> SignalBlock:
 
 def gathered(*blocks: Block) -> tuple[list[list[int]], list[Diagnostic]]:
     notes: list[Diagnostic] = []
-    ahead = Lookahead(lambda o: Place.in_text(TEXT, Span(o.start, o.end)), notes)
+    ahead = Lookahead(lambda o: Place.in_text(TEXT, Span(o.start, o.end)), Notes(notes))
     groups = [group for block in blocks for group in ahead.take(block)]
     groups += ahead.stop(None, "the program ends")
     return [[block.id for block in group] for group in groups], notes
@@ -91,7 +92,7 @@ def test_what_needs_a_stop_ends_the_group_and_is_named(stopping: Block) -> None:
     assert groups == [[1, 2], [3]]
     lost = [note for note in notes if note.place is not None and note.place.span.start == 20]
     (note,) = lost
-    assert note.code == "IRL440"
+    assert note.code == "IRL432"
     assert note.related[0].place.span.start == 30
 
 
@@ -99,7 +100,7 @@ def test_the_end_of_the_program_stops_the_last_move() -> None:
     groups, notes = gathered(move(1), move(2), signal(3))
     assert groups == [[1, 2, 3]]
     assert [(note.code, note.place.span.start, note.related) for note in notes if note.place] == [
-        ("IRL440", 20, ())
+        ("IRL432", 20, ())
     ]
 
 
@@ -121,10 +122,10 @@ def test_the_window_is_bounded() -> None:
 
 def test_questions_that_do_not_ask_where_the_robot_is_stop_nothing() -> None:
     notes: list[Diagnostic] = []
-    ahead = Lookahead(lambda o: Place.in_text(TEXT, Span(o.start, o.end)), notes)
+    ahead = Lookahead(lambda o: Place.in_text(TEXT, Span(o.start, o.end)), Notes(notes))
     assert ahead.take(move(1)) == []
     assert ahead.before(AskPose(origin(2), (0.0,))) == []
     assert notes == []
     assert [len(group) for group in ahead.before(AskPosture(origin(3)))] == [1]
-    assert [note.code for note in notes] == ["IRL440"]
+    assert [note.code for note in notes] == ["IRL432"]
     assert ahead.before(AskPosture(origin(3))) == []

@@ -16,7 +16,9 @@ from irlx.blocks import (
     Question,
     SignalBlock,
 )
-from irlx.diagnostics import Diagnostic, Place, Related, report
+from irlx.diagnostics import Place
+from irlx.motion.plan_chain import lost_blend
+from irlx.pacing.notes import Notes
 
 WINDOW = 200
 """Most moves that are joined: a bound on memory, and on how long nothing of a stream comes."""
@@ -27,13 +29,12 @@ class Lookahead:
 
     A group is what `take` and `stop` give back: one block of any kind, or moves that may pass their targets,
     with the signals between them; only after the last one the robot surely stands. Blends that a group cannot
-    have because of what comes behind it are noted in `notes`, each pair of places once.
+    have because of what comes behind it are noted.
     """
 
-    def __init__(self, locate: Callable[[Origin], Place], notes: list[Diagnostic]) -> None:
+    def __init__(self, locate: Callable[[Origin], Place], notes: Notes) -> None:
         self._locate = locate
         self._notes = notes
-        self._told: set[tuple[Origin, Origin | None]] = set()
         self._waiting: list[Block] = []
         self._moves = 0
 
@@ -73,11 +74,8 @@ class Lookahead:
         return [group] if group else []
 
     def _note(self, move: MoveBlock, where: Origin | None, why: str) -> None:
-        if (move.origin, where) in self._told:
-            return
-        self._told.add((move.origin, where))
-        related = () if where is None else (Related("this stops it", self._locate(where)),)
-        self._notes.append(report("IRL440", self._locate(move.origin), related=related, why=why))
+        stopping = None if where is None else self._locate(where)
+        self._notes.add(lost_blend(self._locate(move.origin), why, stopping))
 
 
 _TOO_MANY = f"at most {WINDOW} moves are joined"

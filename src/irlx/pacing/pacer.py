@@ -33,6 +33,7 @@ from irlx.pacing.executed import Executed
 from irlx.pacing.inputs import answer_of_inputs
 from irlx.pacing.joint_moves import move_joints
 from irlx.pacing.motion import Motion
+from irlx.pacing.notes import Notes
 from irlx.pacing.options import LimitsInForce, Options, SwitchBlock
 from irlx.pacing.path_moves import move_along_path
 from irlx.pacing.posture_left import posture_left, why_left
@@ -62,6 +63,7 @@ class Pacer:
         self.tick = 0
         self.options = Options()
         self.warnings: list[Diagnostic] = []
+        self.notes = Notes(self.warnings)
 
     def answer(self, question: Question) -> tuple[float, ...]:
         """Answer to a question of the interpreter, all blocks before it executed.
@@ -83,8 +85,17 @@ class Pacer:
     @property
     def _situation(self) -> Situation:
         """What the next motion finds."""
-        solvers = self._solver, self._qp
-        return Situation(self._setup, self.q, self.tick, self.options, *solvers, self._locate, self.warnings)
+        return Situation(
+            self._setup,
+            self.q,
+            self.tick,
+            self.options,
+            self._solver,
+            self._qp,
+            self._locate,
+            self.warnings,
+            self.notes,
+        )
 
     def settled(self, block: Block) -> Block:
         """The block as it is executed here: bounds that mean the present posture lie exactly on it."""

@@ -1,6 +1,6 @@
 """IRL34x and IRL42x: options and targets that do not fit the robot as it stands."""
 
-from irlx.diagnostics.codes.code import error, info, warning
+from irlx.diagnostics.codes.code import error, warning
 
 PACING = (
     error("IRL340", "{word}: the lower bound is above the upper one for {joints}", "exchange the two"),
@@ -46,11 +46,6 @@ PACING = (
         "IRL351",
         "this move breaks the constraint '{name}' of the cell by {broken} (rad or m)",
         "PTP goes straight from posture to posture; choose a target that keeps the constraint, or LIN",
-    ),
-    info(
-        "IRL440",
-        "this move stops on its target instead of passing it: {why}",
-        "C_PASS := FALSE says that it is to stop; or put what needs the stop before this move",
     ),
     error(
         "IRL421",
