@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
-from irlx.motion.trapezoid import Trapezoid
+from irlx.motion.time_law import TimeLaw
 from irlx.pacing.governed_return import governed_reference
 from irlx.pacing.return_way import return_way
 from irlx.pacing.slowdown.model import Model
@@ -37,7 +37,7 @@ class PostureTerm:
     through: tuple[float, ...] = ()
     otherwise: PostureTerm | None = None
 
-    def with_terms(self, terms: tuple[Weighted, ...], law: Trapezoid) -> PostureTerm:
+    def with_terms(self, terms: tuple[Weighted, ...], law: TimeLaw) -> PostureTerm:
         """The same with added terms, which act by the time that the way takes at the law's cruising speed."""
         if not terms:
             return self
@@ -76,7 +76,7 @@ class Asked:
 
 
 def posture_term(
-    model: Model, start: Array, law: Trapezoid, asked: Asked | None, cyclic: Array | None, qp: QpSolver
+    model: Model, start: Array, law: TimeLaw, asked: Asked | None, cyclic: Array | None, qp: QpSolver
 ) -> PostureTerm:
     """Posture term of a move that starts at posture `start` (n,) and follows `law`.
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.blocks import MoveBlock, ReconfigureBlock, WaitBlock
-from irlx.motion.trapezoid import Trapezoid
+from irlx.motion.time_law import TimeLaw
 from irlx.pacing.demand import Demand
 from irlx.pacing.posture_term import PostureTerm
 from irlx.pacing.slowing import Slowing
@@ -31,7 +31,7 @@ class PathPart:
 
     demands: tuple[Demand, ...]
     term: PostureTerm
-    law: Trapezoid
+    law: TimeLaw
     is_turn: bool
     angle_per_s: float
     planned: bool

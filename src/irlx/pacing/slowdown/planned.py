@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from irlx.blocks import LimitKind
 from irlx.motion.pose_path import PosePath, Poses
-from irlx.motion.trapezoid import Trapezoid
+from irlx.motion.time_law import TimeLaw
 from irlx.pacing.clock import Clock
 from irlx.pacing.demand import Demand
 from irlx.pacing.row_check import BrokenBound, excess_of
@@ -91,7 +91,7 @@ class MotionTask:
     """
 
     path: PosePath
-    law: Trapezoid
+    law: TimeLaw
     acc: float
     start: Array
     criterion_of: Callable[[float, float], Criterion]
