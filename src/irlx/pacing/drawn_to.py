@@ -25,6 +25,15 @@ from irlx.transform.criteria.combined import Weighted
 Array = NDArray[np.float64]
 
 
+def check_postures(situation: Situation, block: MoveBlock, in_force: LimitsInForce) -> None:
+    """Check targets that are postures. Raises PacingError where one lies outside its limits."""
+    place = situation.locate(block.origin)
+    for number in range(len(block.targets)):
+        posture = _given(situation, block, number)
+        if posture is not None:
+            check_joint_target(posture, situation.robot, in_force.limits, place)
+
+
 def postures_asked(
     situation: Situation, block: MoveBlock, plan: PlannedChain, in_force: LimitsInForce, place: Place
 ) -> Asked | None:
@@ -34,7 +43,7 @@ def postures_asked(
     for none.
     """
     ends = block.targets[: plan.points or None]
-    given = [_given(situation, block, number, in_force, place) for number in range(len(ends))]
+    given = [_given(situation, block, number) for number in range(len(ends))]
     for number, konf in enumerate(_konfs(block)[: len(ends)]):
         if konf is not None:
             given[number] = asked_posture(konf, situation, in_force, place)
@@ -49,17 +58,13 @@ def postures_asked(
     return Asked(end, tuple(inner))
 
 
-def _given(
-    situation: Situation, block: MoveBlock, number: int, in_force: LimitsInForce, place: Place
-) -> Array | None:
-    """Posture (n,) that a target of a move is itself; None for poses, and where a CIRCLE does not come to it."""
+def _given(situation: Situation, block: MoveBlock, number: int) -> Array | None:
+    """Posture (n,) that a target of a move is; None for poses, and where a CIRCLE does not come to it."""
     target = block.targets[number]
     given = posture_target(target, situation.q)
     if given is None or (block.arc is not None and (target is block.arc.via or block.arc.angle is not None)):
         return None
-    posture = np.array(given.values)
-    check_joint_target(posture, situation.robot, in_force.limits, place)
-    return posture
+    return np.array(given.values)
 
 
 def _konfs(block: MoveBlock) -> list[JointTarget | None]:
@@ -79,6 +84,7 @@ def term_of(
     asked: Asked | None,
     limits: JointLimits,
 ) -> PostureTerm:
+    """The posture term of a motion, with what CRITERION adds to it."""
     cyclic = situation.options.cyclic_posture
     term = posture_term(model, situation.q, plan.programmed, asked, cyclic, situation.qp)
     return term.with_terms(_added_terms(situation, block, plan, limits), plan.programmed)

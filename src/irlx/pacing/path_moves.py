@@ -16,7 +16,7 @@ from irlx.motion.plan_circle import circle_path
 from irlx.motion.whole_ticks import ticks_of_move
 from irlx.pacing.conditions import broken_condition, check_targets
 from irlx.pacing.demand import Demand
-from irlx.pacing.drawn_to import postures_asked, term_of, warn_of_posture_left
+from irlx.pacing.drawn_to import check_postures, postures_asked, term_of, warn_of_posture_left
 from irlx.pacing.errors import PacingError
 from irlx.pacing.impossible import Surroundings, explain_failure, goal_shortfall, slower_than_allowed
 from irlx.pacing.motion import Motion
@@ -42,6 +42,7 @@ def move_along_path(situation: Situation, moves: Sequence[MoveBlock], in_force: 
     Where the joined moves cannot be done, the first one is done alone. Raises PacingError or MotionError at
     its place.
     """
+    check_postures(situation, moves[0], in_force)
     legs = _legs(situation, moves)
     plan = plan_chain(legs, *situation.pose, situation.dt)
     if len(plan.ends) > 1:

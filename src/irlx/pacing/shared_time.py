@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import inf
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +36,6 @@ def share_of_time(leg: Leg, start: Pose) -> float:
         pose, left = (plan.path.end_rotation, plan.path.end_position), plan.rest(left)
     least = sum(durations)
     if asked < least * (1.0 - _SLACK):
-        data = {"asked": f"{asked:.6g}", "least": f"{least:.6g}", "governor": "SPEED and ACC"}
+        data: dict[str, Any] = {"asked": f"{asked:.6g}", "least": f"{least:.6g}", "governor": "SPEED and ACC"}
         raise MotionError(report("IRL421", leg.place, **data))
     return asked * durations[0] / least
