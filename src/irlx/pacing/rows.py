@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -90,7 +91,7 @@ def handed_out(rows: MotionRows, blocks: Sequence[MoveBlock], ends: Sequence[flo
     begins = [0.0, *ends]
     return [
         _part(rows, path, block, (first, last), (begins[k], begins[k + 1]))
-        for k, (block, first, last) in enumerate(zip(blocks, lasts, lasts[1:], strict=True))
+        for k, (block, (first, last)) in enumerate(zip(blocks, pairwise(lasts), strict=True))
     ]
 
 
