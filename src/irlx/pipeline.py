@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from math import inf
+from math import inf, radians
 from pathlib import Path, PurePath
 from typing import Any
 
@@ -23,6 +23,10 @@ from irlx.cell.setting import setting_of
 from irlx.diagnostics import Diagnostic, IrlxError, Place, Span, report
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.interpreter.interpret import MAX_STEPS, Interpretation
+from irlx.pacing.correction.corrector import CorrectedRow, Corrector
+from irlx.pacing.correction.share import CORRECTION_SHARE
+from irlx.pacing.correction.tally import Tally
+from irlx.pacing.correction.tool_rates import ToolRates
 from irlx.pacing.executed import Executed
 from irlx.pacing.explanation import TickExplanation
 from irlx.pacing.explanation import explain_tick as explain_row
@@ -41,6 +45,8 @@ from irlx.robot.registered_constraints import registered_constraints
 from irlx.streams.atomic import AtomicFile
 from irlx.streams.joint_stream import FORMAT_VERSION, StreamHeader
 from irlx.streams.sample import Sample
+from irlx.streams.sample_stream import SampleStream
+from irlx.streams.sampler import Sampler
 
 Array = NDArray[np.float64]
 PathLike = str | os.PathLike[str]
@@ -49,6 +55,9 @@ InputsGiven = InputFunction | Mapping[str, Sequence[tuple[float, float]]] | Path
 
 Progress = Callable[[Block, float], None]
 """Called after each block with the block and the simulated time so far, s."""
+
+Sensor = Callable[[Sample], Sequence[float] | Array | None]
+"""Called with the last sample; gives the correction that the tool is to have, None to leave it."""
 
 LEAST_TICK_MS = SHORTEST_TICK * 1e3
 LONGEST_TICK_MS = LONGEST_TICK * 1e3
@@ -132,12 +141,20 @@ def _loaded(path: PathLike, cell: PathLike | None) -> Program:
 class Execution:
     """One run in progress: a program's blocks, and the pacer that executes them."""
 
-    def __init__(self, job: Job) -> None:
+    def __init__(self, job: Job, planned_share: float = 1.0) -> None:
         self.job = job
         cell = job.cell
         dt = job.tick_ns / 1e9
         setup = PacingSetup(
-            kinematics_of(cell), cell.limits, cell.weights, cell.start, dt, (), job.max_slow, job.inputs
+            kinematics_of(cell),
+            cell.limits,
+            cell.weights,
+            cell.start,
+            dt,
+            (),
+            job.max_slow,
+            job.inputs,
+            planned_share,
         )
         self.kinematics = setup.kinematics
         self._pacer = Pacer(setup, self._locate)
@@ -185,6 +202,14 @@ class Execution:
     def _all(self, groups: Sequence[tuple[Block, ...]]) -> Iterator[Executed]:
         for group in groups:
             yield from self._pacer.carry_out(group)
+
+    def corrected(self, ask: Callable[[], object], tally: Tally) -> Iterator[CorrectedRow]:
+        """Rows of the program, each corrected by what `ask` says to the one before; see `planned_share`."""
+        motion = self.job.cell.motion
+        rates = ToolRates(
+            motion.speed / 1e3, motion.acc / 1e3, radians(motion.speed_ori), radians(motion.acc_ori)
+        )
+        return Corrector(self._pacer, rates, ask, tally).rows(self)
 
     def blocks(self) -> Iterator[Block]:
         """Blocks of the program; nothing moves until it asks for the posture that its moves lead to."""
@@ -379,19 +404,42 @@ def stream(
     max_slow: float | None = None,
     max_steps: int | None = None,
     inputs: InputsGiven = None,
-) -> Iterator[Sample]:
+    correct: Sensor | None = None,
+) -> SampleStream:
     """Samples of a run, one after another, motion by motion as they are asked for.
 
     The same samples as `run` gives. Iteration may stop at any sample. What cannot be prepared raises
     here, what goes wrong in motion at the sample it keeps from coming, as IrlxError.
+
+    `correct` is asked after each sample for the correction of the tool in the next one: six numbers, the
+    displacement (m) and the rotation vector (rad) from the programmed pose in its own frame, or None for no
+    change. Motions are then planned with three quarters of the joints' speed and acceleration limits, and
+    corrections follow within the rest; `SampleStream.corrections` reports what was delayed. Raises IrlxError
+    with IRL583 for a cell with constraints; at a sample IRL580, IRL581, IRL582 for an answer that is none.
     """
-    return _samples(prepare(program, cell, tick_ms, max_slow, max_steps, inputs))
+    job = prepare(program, cell, tick_ms, max_slow, max_steps, inputs)
+    if correct is None:
+        return SampleStream(_samples(job))
+    execution = Execution(job, 1.0 - CORRECTION_SHARE)
+    if execution.kinematics.constraints:
+        names = ", ".join(one.name for one in execution.kinematics.constraints)
+        raise IrlxError(report("IRL583", names=names))
+    tally = Tally(job.cell.robot.joint_names)
+    return SampleStream(_corrected(execution, correct, tally), lambda: tally.report)
 
 
-def _samples(job: Job) -> Iterator[Sample]:
+def _samples(job: Job) -> Generator[Sample, None, None]:
     execution = Execution(job)
     recording = execution.recording()
     yield from recording.take_samples()
     for executed in execution:
         recording.add(executed)
         yield from recording.take_samples()
+
+
+def _corrected(execution: Execution, sensor: Sensor, tally: Tally) -> Generator[Sample, None, None]:
+    job = execution.job
+    sampler, start = Sampler(job.tick_ns), job.cell.start
+    yield sampler.sample(start, *execution.kinematics.tool_pose(start), 0, np.zeros(6))
+    for row in execution.corrected(lambda: sensor(sampler.last), tally):
+        yield sampler.sample(row.q, row.rotation, row.position, row.block.id, row.correction)
