@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from irlx.blocks import (
     AskInput,
     AskInputChange,
+    AskJointBounds,
+    AskLastMove,
     AskManipulability,
     AskNearestPosture,
     AskPose,
@@ -25,10 +27,12 @@ from irlx.blocks import (
     PoseTarget,
     Question,
     ReconfigureBlock,
+    ToolBlock,
     WaitBlock,
+    WeightsBlock,
 )
 from irlx.diagnostics import Diagnostic, Place
-from irlx.pacing.answers import answer_of_posture
+from irlx.pacing.answers import answer_of_bounds, answer_of_last_move, answer_of_posture, way_of
 from irlx.pacing.inputs import answer_of_inputs
 from irlx.pacing.joint_moves import move_joints
 from irlx.pacing.options import LimitsInForce, Options, SwitchBlock
@@ -36,6 +40,7 @@ from irlx.pacing.path_moves import move_along_path
 from irlx.pacing.posture_left import posture_left, why_left
 from irlx.pacing.postures import asked_posture, posture_of_pose
 from irlx.pacing.reconfigure import reconfigured
+from irlx.pacing.refitting import refitted
 from irlx.pacing.rows import MotionRows
 from irlx.pacing.situation import PacingSetup, Situation
 from irlx.pacing.snap import snapped
@@ -60,6 +65,7 @@ class Pacer:
         self.tick = 0
         self.options = Options()
         self.warnings: list[Diagnostic] = []
+        self._last_way = (0.0, 0.0)
 
     def answer(self, question: Question) -> tuple[float, ...]:
         """Answer to a question of the interpreter, all blocks before it executed.
@@ -73,6 +79,10 @@ class Pacer:
             return answer_of_inputs(question, setup.inputs, self.tick * setup.dt, setup.dt, self._locate)
         if isinstance(question, AskPose | AskManipulability):
             return answer_of_posture(question, self._setup.kinematics)
+        if isinstance(question, AskLastMove):
+            return answer_of_last_move(*self._last_way)
+        if isinstance(question, AskJointBounds):
+            return answer_of_bounds(self._situation.in_force().limits)
         situation = self._situation
         target, place = PoseTarget(question.position, question.orientation), self._locate(question.origin)
         near = np.array(question.near) if isinstance(question, AskNearestPosture) else None
@@ -83,6 +93,11 @@ class Pacer:
         """What the next motion finds."""
         solvers = self._solver, self._qp
         return Situation(self._setup, self.q, self.tick, self.options, *solvers, self._locate, self.warnings)
+
+    @property
+    def setup(self) -> PacingSetup:
+        """The robot as it is now: with the tool and weights that the program has given it."""
+        return self._setup
 
     def settled(self, block: Block) -> Block:
         """The block as it is executed here: bounds that mean the present posture lie exactly on it."""
@@ -108,6 +123,9 @@ class Pacer:
             from irlx.pacing.criteria import check_criterion
 
             check_criterion(block.choice, self._robot, place)
+        if isinstance(block, ToolBlock | WeightsBlock):
+            self._setup = refitted(self._setup, block, place)
+            self._solver = TickSolver(self._setup.kinematics, self._qp)
         if isinstance(block, SwitchBlock):
             self.options = self.options.after(block, self.q)
         return None
@@ -121,7 +139,9 @@ class Pacer:
         # A clause may have let a joint out of the switch that holds again now.
         check_inside(self.q, self._robot, in_force.limits, place)
         carry_out = move_joints if block.kind is MoveKind.PTP else move_along_path
-        return self._moved(carry_out(situation, block, in_force, place), in_force)
+        rows = carry_out(situation, block, in_force, place)
+        self._last_way = way_of(rows, situation.pose[1], situation.dt)
+        return self._moved(rows, in_force)
 
     def _moved(self, rows: MotionRows | None, in_force: LimitsInForce) -> MotionRows | None:
         """The rows of a motion with its limits, the robot now standing at their end."""
