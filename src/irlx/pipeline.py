@@ -246,9 +246,9 @@ class Execution:
         if rows is None or not rows.first_tick <= tick < rows.first_tick + len(rows):
             return None
         cell = self.job.cell
-        limits = rows.limits or cell.limits
+        limits, setup = rows.limits or cell.limits, self._pacer.setup
         dt = self.job.tick_ns / 1e9
-        return explain_row(rows, before, tick, limits, cell.weights, self.kinematics, dt)
+        return explain_row(rows, before, tick, limits, setup.weights, setup.kinematics, dt)
 
     def recording(self) -> Recording:
         """A recording that begins at the cell's start posture."""

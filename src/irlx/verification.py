@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 from irlx.blocks import (
     AskInput,
     AskInputChange,
+    AskJointBounds,
+    AskLastMove,
     AskManipulability,
     AskNearestPosture,
     AskPose,
@@ -19,6 +21,7 @@ from irlx.blocks import (
     AskPostureOf,
     Block,
     InputBlock,
+    ToolBlock,
     WaitBlock,
 )
 from irlx.cell.cell import Cell
@@ -196,15 +199,15 @@ def _replayed(program: Program, cell: Cell, outline: Outline, max_steps: int) ->
         except StopIteration:
             return
         reply = None
-        if isinstance(item, AskPostureOf | AskNearestPosture):
-            # Which posture a pose has is for the machine to say, and no stream tells.
+        if isinstance(item, AskPostureOf | AskNearestPosture | AskLastMove | AskJointBounds):
+            # What only the machine can say, no stream tells.
             raise Unanswerable
         if isinstance(item, AskPosture):
             records = outline.records
             row = records[done].tick if done < len(records) else outline.rows - 1
             reply = outline.posture(row)
         elif isinstance(item, AskPose | AskManipulability):
-            reply = _of_posture(item, cell)
+            reply = _of_posture(item, cell, [record.block for record in outline.records[:done]])
         elif isinstance(item, AskInput | AskInputChange):
             reply = _recorded(item, outline, done)
         else:
@@ -212,10 +215,16 @@ def _replayed(program: Program, cell: Cell, outline: Outline, max_steps: int) ->
             yield item
 
 
-def _of_posture(question: AskPose | AskManipulability, cell: Cell) -> tuple[float, ...]:
-    """What the robot's model says of a posture."""
+def _of_posture(
+    question: AskPose | AskManipulability, cell: Cell, done: Sequence[Block]
+) -> tuple[float, ...]:
+    """What the robot's model says of a posture, with the tool that the blocks before have given it."""
     # Imported here: few programs ask, and the model loads a library that verification does without.
     from irlx.pacing.answers import answer_of_posture
     from irlx.robot.kinematics import Kinematics
 
-    return answer_of_posture(question, Kinematics(cell.robot))
+    kinematics = Kinematics(cell.robot)
+    tool = next((block for block in reversed(done) if isinstance(block, ToolBlock)), None)
+    if tool is not None:
+        kinematics = kinematics.with_tool(tool.position, tool.orientation)
+    return answer_of_posture(question, kinematics)

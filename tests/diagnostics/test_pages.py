@@ -79,6 +79,8 @@ MESSAGES = {
     "IRL285": (4, 3, "this WAIT FOR may wait for ever"),
     "IRL286": (4, 12, "= compares REAL numbers digit for digit"),
     "IRL287": (3, 10, "the function sign can end without a RETURN"),
+    "IRL288": (4, 14, "the blend of this move is lost: WAIT in line 5 needs the robot at rest"),
+    "IRL289": (6, 3, "gripper is set while the robot passes the corner, not once it has stopped there"),
     "IRL310": (4, 14, "the lower bound 60 of joint 2 is above its upper bound -60"),
     "IRL311": (
         5,

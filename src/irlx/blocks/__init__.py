@@ -19,6 +19,8 @@ from irlx.blocks.options import (
 from irlx.blocks.questions import (
     AskInput,
     AskInputChange,
+    AskJointBounds,
+    AskLastMove,
     AskManipulability,
     AskNearestPosture,
     AskPose,
@@ -35,6 +37,8 @@ __all__ = [
     "ArcCourse",
     "AskInput",
     "AskInputChange",
+    "AskJointBounds",
+    "AskLastMove",
     "AskManipulability",
     "AskNearestPosture",
     "AskPose",

@@ -64,6 +64,27 @@ class AskManipulability:
 
 
 @dataclass(frozen=True)
+class AskLastMove:
+    """How long did the last MOVE take, and where on it does the tool stand, all blocks so far executed?
+
+    Answer: duration, s; length of the path behind the tool and of that before it, m. All are 0 before the
+    first MOVE.
+    """
+
+    origin: Origin
+
+
+@dataclass(frozen=True)
+class AskJointBounds:
+    """Between which values may each joint move now, by the robot and by the limits in force?
+
+    Answer: all lower bounds, then all upper ones, rad or m, infinite where there is none.
+    """
+
+    origin: Origin
+
+
+@dataclass(frozen=True)
 class AskInput:
     """What does this input say, all blocks so far executed? Answer: one number, 0 or 1 for a BOOL.
 
@@ -88,5 +109,13 @@ class AskInputChange:
 
 
 Question = (
-    AskPosture | AskPostureOf | AskNearestPosture | AskPose | AskManipulability | AskInput | AskInputChange
+    AskPosture
+    | AskPostureOf
+    | AskNearestPosture
+    | AskPose
+    | AskManipulability
+    | AskLastMove
+    | AskJointBounds
+    | AskInput
+    | AskInputChange
 )

@@ -16,7 +16,8 @@ from irlx.interpreter.expressions import Expressions
 from irlx.interpreter.loops import add_for
 from irlx.interpreter.machine import END
 from irlx.interpreter.motion import Motion
-from irlx.interpreter.scope import Routine, Signal
+from irlx.interpreter.robot_variables import add_change
+from irlx.interpreter.scope import Followed, Routine, Signal
 from irlx.interpreter.support import part_name
 from irlx.interpreter.targets import origin_of
 from irlx.interpreter.types import BOOL, Type
@@ -90,7 +91,11 @@ class Statements:
         if signal is not None and not signal.is_input and not node.target.selectors:
             self._set_output(signal, node)
             return
-        self.assign(node.target, node.value, node)
+        stored = self.context.scope.found(node.target.base.key)
+        if isinstance(stored, Followed):
+            add_change(self, node, stored)
+        else:
+            self.assign(node.target, node.value, node)
 
     def _set_output(self, signal: Signal, node: tree.Assignment) -> None:
         """Add the steps that set an output: its value is remembered, and becomes a block."""

@@ -16,7 +16,9 @@ from irlx.language.types import (
     Simple,
     Type,
     ambiguous_field,
+    joint_bounds,
     joint_type,
+    joint_weights,
     predefined_types,
 )
 
@@ -36,6 +38,8 @@ __all__ = [
     "Simple",
     "Type",
     "ambiguous_field",
+    "joint_bounds",
     "joint_type",
+    "joint_weights",
     "predefined_types",
 ]

@@ -1,6 +1,6 @@
 """IRL281 to IRL299 and IRL310 to IRL329: what is allowed and seldom meant, told by checks."""
 
-from irlx.diagnostics.codes.code import Code, warning
+from irlx.diagnostics.codes.code import Code, info, warning
 
 LINTS: tuple[Code, ...] = (
     warning("IRL281", "the {kind} '{name}' is never used"),
@@ -22,6 +22,16 @@ LINTS: tuple[Code, ...] = (
         "compare the difference with a tolerance: ABS(a - b) < 1E-6",
     ),
     warning("IRL287", "the function {name} can end without a RETURN"),
+    warning(
+        "IRL288",
+        "the blend of this move is lost: {blocker} needs the robot at rest",
+        "move that statement, or leave out {param}",
+    ),
+    info(
+        "IRL289",
+        "{output} is set while the robot passes the corner, not once it has stopped there",
+        "leave out {param} of the move before it, if it shall stop",
+    ),
     warning("IRL310", "the lower bound {low} of joint {joint} is above its upper bound {high}"),
     warning(
         "IRL311",

@@ -76,7 +76,7 @@ def type_check(
 ) -> TypeCheck:
     """A type check that has looked at nothing yet."""
     types = known_types(joints.number)
-    check = TypeCheck(source, Names(types, system_names(types, frames)))
+    check = TypeCheck(source, Names(types, system_names(types, frames, joints.number)))
     check.joints, check.complete = joints, complete
     return check
 

@@ -24,6 +24,7 @@ from irlx.language.types import (
     same_type,
 )
 
+FOLLOWED = "a system variable that the robot follows"
 NOT_A_VALUE = {"procedure": "a procedure", "robot": "a robot"}
 
 
@@ -180,6 +181,7 @@ class Designators(Context):
             "constant": "a constant",
             "input": "an input",
             "output": "an output",
+            "followed": FOLLOWED,
             "procedure": "a procedure",
             "function": "a function",
         }

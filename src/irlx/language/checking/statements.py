@@ -9,6 +9,7 @@ from irlx.language import tree
 from irlx.language.builtins import PROCEDURES
 from irlx.language.checking.case_labels import twice_chosen
 from irlx.language.checking.channels import Channels
+from irlx.language.checking.designators import FOLLOWED
 from irlx.language.checking.motion import Motion
 from irlx.language.references import Reference
 from irlx.language.types import BOOL, CHAR, INT, REAL, STRING, UNKNOWN, Type, is_number, same_type
@@ -22,6 +23,7 @@ _KINDS = {
     "output": "an output",
     "robot": "a robot",
     "system": "a system variable",
+    "followed": "a system variable",
 }
 
 
@@ -69,6 +71,8 @@ class Statements(Motion, Channels):
 
     def _for(self, node: tree.For) -> None:
         type, entry = self.set_target(node.variable)
+        if entry is not None and entry.kind == "followed":
+            self.add("IRL249", node.variable, where="this statement", found=FOLLOWED)
         if entry is not None:
             entry.set(None, whole=False)
         if not is_number(type) and type is not UNKNOWN:

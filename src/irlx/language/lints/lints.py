@@ -5,6 +5,7 @@ from __future__ import annotations
 from irlx.diagnostics import Diagnostic, SourceText
 from irlx.language import tree
 from irlx.language.checking import TypedText
+from irlx.language.lints.blends import lost_blends
 from irlx.language.lints.bounds import crossed_bounds
 from irlx.language.lints.closed_path import open_cycles
 from irlx.language.lints.flow import flow_lints
@@ -18,6 +19,7 @@ def lints_of(
     if isinstance(root, tree.DataList):
         return []
     found = [*typed.lints, *flow_lints(root, source), *crossed_bounds(typed.facts, source)]
+    found += lost_blends(root, source)
     if isinstance(root, tree.Program):
         found += unused_names(typed, source)
         found += open_cycles(root, typed.facts, source)
