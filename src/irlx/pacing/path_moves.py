@@ -103,7 +103,9 @@ def _motion(
     warn_of_posture_left(situation, drawn, paced.q[-1], block, place)
     rows = _rows(situation, block, plan, paced)
     touched = len(plan.ends)
-    handed = handed_out(rows, moves[:touched], plan.ends) if touched > 1 else [rows]
+    handed: list[MotionRows | None] = [rows]
+    if touched > 1:
+        handed = handed_out(rows, moves[:touched], plan.ends)
     return Motion(tuple(handed), in_force, rest)
 
 
