@@ -37,9 +37,7 @@ def legs_of(kit, rng: np.random.Generator, count: int):
         if rng.random() < 0.1:
             points[1] = here
         turns = [None if rng.random() < 0.5 else kit.quaternion(rng) for _ in points]
-        kind = rng.choice(
-            ["line", "circle", "spline", "polyline", "back", "turn"], p=[0.5, 0.2, 0.1, 0.1, 0.05, 0.05]
-        )
+        kind = rng.choice(KINDS, p=[0.5, 0.2, 0.1, 0.1, 0.05, 0.05])
         if kind == "circle":
             block = kit.circle(points[0], points[1], law, turns[:2], turns_through_via=rng.random() < 0.3)
             end = points[1]

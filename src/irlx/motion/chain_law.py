@@ -13,7 +13,7 @@ from irlx.blocks import MotionLaw, Profile
 from irlx.diagnostics import Place, report
 from irlx.motion.errors import MotionError
 from irlx.motion.fastest_law import fastest_s_curves, fastest_trapezoids
-from irlx.motion.sections import Sections, Shape, bounds_of
+from irlx.motion.sections import Sections
 from irlx.motion.time_law import TimeLaw
 from irlx.motion.trapezoid import Trapezoid
 
@@ -26,16 +26,16 @@ _LEAST_RATE = 1e-100
 
 @dataclass(frozen=True)
 class Stage:
-    """The part of a chain that one leg carries out, from hand-over to hand-over: its sections and its law."""
+    """The part of a chain that one leg carries out, from hand-over to hand-over: its bounds and its law."""
 
-    shape: Shape
+    bounds: Sections
     law: MotionLaw
     place: Place
 
     @property
     def length(self) -> float:
-        """Its way, m."""
-        return float(np.sum(self.shape.lengths))
+        """Its way, in units of the path."""
+        return float(np.sum(self.bounds.lengths))
 
     @property
     def time(self) -> float | None:
@@ -49,7 +49,7 @@ def chain_law(stages: Sequence[Stage], length: float) -> TimeLaw:
     A stage with TIME gets a lower top speed, so that it takes this time from hand-over to hand-over. Raises
     MotionError, IRL421, where even its programmed speed takes longer.
     """
-    bounds = [bounds_of(stage.shape, stage.law) for stage in stages]
+    bounds = [stage.bounds for stage in stages]
     if min(float(min(np.min(bound.speed), np.min(bound.acc))) for bound in bounds) < _LEAST_RATE:
         return Trapezoid(length, 0.0, inf, 0.0)
     law = _fastest(stages, bounds, length)

@@ -19,7 +19,7 @@ from irlx.motion.edges import Edge, Leg, edges_of
 from irlx.motion.errors import MotionError
 from irlx.motion.path_part import PathPart
 from irlx.motion.plan_path import PlannedPath, in_whole_ticks, path_law, standing
-from irlx.motion.sections import Shape
+from irlx.motion.sections import Shape, bounds_of
 
 __all__ = ["Join", "Leg", "PlannedChain", "lost_blend", "plan_chain"]
 
@@ -275,8 +275,11 @@ def _stages(chained: _Chained, run: _Run) -> list[Stage]:
             shapes[-1].append(part.shape)
         if k < len(run.corners):
             shapes[-1].append(run.corners[k].blend.path.shape.part(slice(SECTIONS)))
-    edges = {edge.leg: edge for edge in run.edges}
-    return [Stage(Shape.joined(parts), edges[leg].law, edges[leg].place) for leg, parts in enumerate(shapes)]
+    found = []
+    for leg, parts in enumerate(shapes):
+        edge = next(edge for edge in run.edges if edge.leg == leg)
+        found.append(Stage(bounds_of(Shape.joined(parts), edge.law), edge.law, edge.place))
+    return found
 
 
 def _ends(run: _Run, chained: _Chained, length: float) -> tuple[float, ...]:

@@ -58,7 +58,7 @@ def spline_path(positions: Array, rotations: Array, place: Place) -> tuple[Curve
 
 
 def _slowest(velocities: Array) -> Array:
-    """Least length (N - 1,) between neighbours of N vectors (N, 3) that change linearly, nearly as these do."""
+    """Least length (N - 1,) on the straight ways between neighbours of N vectors (N, 3)."""
     first, change = velocities[:-1], np.diff(velocities, axis=0)
     square = np.sum(change * change, axis=1)
     share = np.divide(-np.sum(first * change, axis=1), square, out=np.zeros_like(square), where=square > 0.0)
