@@ -20,6 +20,9 @@ LEAST_BLEND = 1e-6
 LEAST_PASS = 1e-4
 """Shortest distance of a blend by C_PASS, m."""
 
+LONGEST_WAY = 1e6
+"""Longest way beside a blend, m: from there on, too, it would be made of rounding."""
+
 _CURVE_SHARE = 0.7
 """Part of ACC that an arc may take across where a blend at the programmed speed shall join it."""
 
@@ -69,6 +72,8 @@ def _hindrance(before: Edge, after: Edge) -> str:
             return f"{name} has no length"
         if edge.path.is_pure_turn:
             return f"{name} turns the tool on the spot"
+        if not edge.path.length < LONGEST_WAY:
+            return f"{name} is too long"
     leaving = before.path.derivatives(np.array([before.path.length]))[0][0]
     joining = after.path.derivatives(np.array([0.0]))[0][0]
     angle = float(np.arctan2(np.linalg.norm(np.cross(leaving, joining)), leaving @ joining))

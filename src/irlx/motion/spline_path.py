@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from math import degrees
+from math import degrees, inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,8 +16,12 @@ from irlx.motion.errors import MotionError
 from irlx.motion.polynomial_curve import PolynomialCurve
 from irlx.motion.turn import HALF_TURN_MARGIN
 from irlx.motion.turn_curve import TurnCurve, TurnJet
+from irlx.motion.whole_ticks import ticks_of_move
 
 Array = NDArray[np.float64]
+
+LONGEST_WAY = 1e9
+"""Way, m, from which on a spline is beyond all numbers: no robot gets through it in the time of a move."""
 
 SECTIONS = 12
 """Sections of a spline between two of its points, each with a speed of its own."""
@@ -38,19 +42,27 @@ def spline_path(positions: Array, rotations: Array, place: Place) -> tuple[Curve
     """
     chords = np.linalg.norm(np.diff(positions, axis=0), axis=1)
     knots = np.concatenate([[0.0], np.cumsum(chords)])
+    if not knots[-1] < LONGEST_WAY:
+        ticks_of_move(inf, 1.0, place)
     curve = PolynomialCurve(knots, CubicSpline(knots, positions, bc_type="natural").c)
     steps = np.linspace(0.0, 1.0, SECTIONS + 1)[:-1]
     cuts = np.append((knots[:-1, None] + chords[:, None] * steps).ravel(), knots[-1])
-    speeds = curve.speeds(cuts)
+    speeds = _slowest(curve.velocities(cuts))
     if np.min(speeds) < _SLOWEST:
-        point = round(int(np.argmin(speeds)) / SECTIONS)
+        point = round((int(np.argmin(speeds)) + 0.5) / SECTIONS)
         raise MotionError(report("IRL435", place, point=max(point, 1)))
     at = curve.length_at(knots)
     at[-1] = curve.length
     turns = _turns(at, rotations, place)
-    ends = curve.length_at(cuts)
-    ends[-1] = curve.length
-    return CurvedPath(curve, turns, ends, positions[-1], rotations[-1]), at
+    return CurvedPath(curve, turns, cuts, positions[-1], rotations[-1]), at
+
+
+def _slowest(velocities: Array) -> Array:
+    """Least length (N - 1,) on the straight ways between neighbours of N vectors (N, 3)."""
+    first, change = velocities[:-1], np.diff(velocities, axis=0)
+    square = np.sum(change * change, axis=1)
+    share = np.divide(-np.sum(first * change, axis=1), square, out=np.zeros_like(square), where=square > 0.0)
+    return np.asarray(np.linalg.norm(first + np.clip(share, 0.0, 1.0)[:, None] * change, axis=1))
 
 
 def _turns(at: Array, rotations: Array, place: Place) -> TurnCurve:
