@@ -15,11 +15,12 @@ from irlx.verifier.rows import Rows, Stretch
 
 class StopChecks:
     """The last row of every motion repeats the row before it: the robot stands, with a tick to show it. Rows
-    before the first motion all repeat the start posture."""
+    before the first motion all repeat the start posture. A move that passes its target does not stop."""
 
     def __init__(self, evidence: Evidence) -> None:
         self._outline = evidence.outline
         self._tally = evidence.tally("stops", "rad|m")
+        self._passing = _passing(evidence)
 
     def take(self, rows: Rows) -> None:
         """Add a portion."""
@@ -29,7 +30,7 @@ class StopChecks:
             unfinished = last == outline.rows - 1 and not outline.complete
             if stretch.block == 0:
                 self._add(rows, stretch, 0)
-            elif stretch.ends and not unfinished:
+            elif stretch.ends and not unfinished and stretch.block not in self._passing:
                 self._add(rows, stretch, len(stretch.rows) - 1)
 
     def _add(self, rows: Rows, stretch: Stretch, first: int) -> None:
@@ -117,6 +118,11 @@ class FrozenChecks:
     def checks(self) -> list[Check]:
         """Frozen joints."""
         return [self._tally.check()]
+
+
+def _passing(evidence: Evidence) -> frozenset[int]:
+    """Ids of the moves that pass their target without a stop."""
+    return frozenset(number for number, demand in evidence.demands.items() if demand.passes)
 
 
 def _other_bits(first: Floats, second: Floats) -> NDArray[np.bool_]:
