@@ -21,9 +21,11 @@ from irlx.blocks.questions import (
     AskInputChange,
     AskManipulability,
     AskNearestPosture,
+    AskPause,
     AskPose,
     AskPosture,
     AskPostureOf,
+    MachineQuestion,
     Question,
 )
 from irlx.blocks.reconfigure import ReconfigureBlock
@@ -35,6 +37,7 @@ __all__ = [
     "AskInputChange",
     "AskManipulability",
     "AskNearestPosture",
+    "AskPause",
     "AskPose",
     "AskPosture",
     "AskPostureOf",
@@ -52,6 +55,7 @@ __all__ = [
     "LimitClause",
     "LimitKind",
     "LimitSwitchBlock",
+    "MachineQuestion",
     "MotionLaw",
     "MoveBlock",
     "MoveKind",

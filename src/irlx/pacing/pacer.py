@@ -22,11 +22,12 @@ from irlx.blocks import (
     FreezeBlock,
     JointTarget,
     LimitSwitchBlock,
+    MachineQuestion,
     MoveBlock,
     MoveKind,
     Origin,
+    PauseBlock,
     PoseTarget,
-    Question,
     ReconfigureBlock,
     WaitBlock,
 )
@@ -118,7 +119,7 @@ class Pacer:
         self.options = Options()
         self.warnings: list[Diagnostic] = []
 
-    def answer(self, question: Question) -> tuple[float, ...]:
+    def answer(self, question: MachineQuestion) -> tuple[float, ...]:
         """Answer to a question of the interpreter, all blocks before it executed.
 
         Raises PacingError, IRL522, for the posture of a pose that none reaches.
@@ -149,7 +150,7 @@ class Pacer:
         if isinstance(block, ReconfigureBlock):
             return self._reconfigure(block)
         place = self._locate(block.origin)
-        if isinstance(block, WaitBlock):
+        if isinstance(block, WaitBlock | PauseBlock):
             return self._wait(block, place)
         if isinstance(block, LimitSwitchBlock):
             self.warnings += check_limit(block, self._robot, self._setup.limits, self.q, place)
@@ -183,7 +184,7 @@ class Pacer:
         self.tick += len(rows)
         return replace(rows, limits=in_force.limits)
 
-    def _wait(self, block: WaitBlock, place: Place) -> MotionRows | None:
+    def _wait(self, block: WaitBlock | PauseBlock, place: Place) -> MotionRows | None:
         setup = self._setup
         rows = waited(block, self.q, setup.dt, self.tick + 1, setup.kinematics, place)
         return self._moved(rows, limits_in_force(setup.limits, self.options))

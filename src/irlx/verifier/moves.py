@@ -15,6 +15,7 @@ from irlx.blocks import (
     LimitSwitchBlock,
     MoveBlock,
     MoveKind,
+    PauseBlock,
     PoseTarget,
     ReconfigureBlock,
     SignalBlock,
@@ -85,7 +86,7 @@ def _misfit(outline: Outline) -> tuple[int, str] | None:
             return record.tick, f"block {block.id}: {reason}"
         if block.id != due:
             return record.tick, f"block {block.id} stands where {due} is due: one is missing or added"
-        moves = isinstance(block, MoveBlock | ReconfigureBlock | WaitBlock)
+        moves = isinstance(block, MoveBlock | ReconfigureBlock | WaitBlock | PauseBlock)
         begins[block.id] = record.tick if moves else -1
         if record.tick != standing:
             late = f" (the samples end at {rows - 1})" if record.tick >= rows else ""
@@ -127,7 +128,7 @@ def _wrong_numbers(block: Block, joints: int) -> str:
         ranges = [block.range]
     if any(len(bounds.lower) != joints or len(bounds.upper) != joints for bounds in ranges):
         return f"its limits are not those of {joints} joints"
-    if isinstance(block, WaitBlock) and not 0.0 <= block.duration < np.inf:
+    if isinstance(block, WaitBlock | PauseBlock) and not 0.0 <= block.duration < np.inf:
         return f"it waits {block.duration} s"
     if isinstance(block, SignalBlock | InputBlock) and not _fits(block.port.kind, block.value):
         return f"its {block.port.name} is {block.value}, which is no {block.port.kind.value}"
