@@ -13,7 +13,7 @@ from irlx.cell.frame_names import frame_names
 from irlx.diagnostics import Diagnostic, IrlxError, Place, SourceText, report
 from irlx.diagnostics.near_files import near_files
 from irlx.language import tree
-from irlx.language.analysis import Analysis, analyse
+from irlx.language.analysis import Analysis, CellNames, DataListResolver, analyse
 from irlx.language.data_lists import ImportedList
 from irlx.language.modules import ImportedModule, ModuleProblem
 from irlx.language.source import decode_source
@@ -114,6 +114,12 @@ def digest_of_all(program: str, lists: Sequence[DataListFile], modules: Sequence
         return program
     lines = "".join(f"{digest}\n" for digest in digests)
     return hashlib.sha256(lines.encode("ascii")).hexdigest()
+
+
+def names_around(path: PathLike) -> tuple[DataListResolver, CellNames]:
+    """What gives the data lists beside a file, and the names that the cell a run would find adds to it."""
+    file = Path(path)
+    return _ListFiles(file), lambda root: _found_names(file, root)
 
 
 def analyse_file(path: PathLike, cell: PathLike | None = None, joints: tuple[str, ...] = ()) -> Analysis:
@@ -234,14 +240,8 @@ def _analysis(
     """Analysis of the bytes of a file. Raises ProgramError for bytes that are no text."""
 
     def cell_names(root: tree.Program | tree.Module) -> tuple[str, ...]:
-        files.names = found_names(root)
+        files.names = _found_names(path, root) if cell is None else frame_names(Path(cell))
         return files.names
-
-    def found_names(root: tree.Program | tree.Module) -> tuple[str, ...]:
-        if cell is not None:
-            return frame_names(Path(cell))
-        found = (candidate for candidate in _candidates(path, _specification(root)) if is_file(candidate))
-        return next((frame_names(candidate) for candidate in found), ())
 
     try:
         text = decode_source(str(path), content)
@@ -250,6 +250,12 @@ def _analysis(
         raise ProgramError(error.diagnostics) from error
     found = (*analysis.diagnostics, *files.findings)
     return replace(analysis, diagnostics=found, modules=tuple(files.modules))
+
+
+def _found_names(path: Path, root: tree.Program | tree.Module) -> tuple[str, ...]:
+    """Names of the frames of the cell that a run of this file would find."""
+    found = (candidate for candidate in _candidates(path, _specification(root)) if is_file(candidate))
+    return next((frame_names(candidate) for candidate in found), ())
 
 
 def _why_no_program(analysis: Analysis) -> tuple[Diagnostic, ...]:

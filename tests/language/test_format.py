@@ -254,7 +254,7 @@ def test_a_line_that_pushes_comments_beyond_the_margin_stands_apart():
     [
         ("IF a { why }\nx; ENDIF", ["IF a THEN  { why }", "  x;", "ENDIF;"]),
         ("WHILE a < b\nx; ENDWHILE;", ["WHILE a < b DO", "  x;", "ENDWHILE;"]),
-        ("OUT_3 = TRUE;", ["OUT_3 := TRUE;"]),
+        ("x = TRUE;", ["x := TRUE;"]),
         ("MOVE LIN p1 SPEED:=5 ACC:=2;", ["MOVE LIN p1 SPEED := 5, ACC := 2;"]),
         ("CYCLICSTART\nMOVE LIN p1;\nOBSTACLEEND w\nHALT { last }", None),
     ],

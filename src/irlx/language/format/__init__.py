@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from irlx.diagnostics import Diagnostic, IrlxError, Place, SourceText, report
 from irlx.language import tree
 from irlx.language.format.kept import what_is_lost
 from irlx.language.format.line_ends import text_of
 from irlx.language.format.parts import PartLayout
+from irlx.language.format.ports import declared_ports
 from irlx.language.format.render import render
 from irlx.language.format.repair import REPAIRED, repaired
 from irlx.language.format.trivia import Tokens, UnexpectedToken
@@ -15,17 +18,27 @@ from irlx.language.moves import check_move
 from irlx.language.parser import Parse, parse
 from irlx.language.source import source_text
 
+if TYPE_CHECKING:
+    from irlx.language.analysis import CellNames
+    from irlx.language.data_lists import DataListResolver
+
 __all__ = ["format_source"]
 
 _ROUNDS = 6
 """A comment in an odd place may need more than one; text without any needs one."""
 
 
-def format_source(text: str, name: str = "<text>") -> str:
+def format_source(
+    text: str,
+    name: str = "<text>",
+    data_lists: DataListResolver | None = None,
+    cell_names: CellNames | None = None,
+) -> str:
     """The text of a program, module or data list in irlx's form.
 
     Raises IrlxError: with all findings of the syntax where the text has errors, IRL144 where the result would
     not mean the same, lose a comment, or change when formatted again. `name` is how findings name the text.
+    `data_lists` and `cell_names`, as `analyse` takes them, tell names that are none of undeclared ports.
     """
     ends = "\r\n" if text.partition("\n")[0].endswith("\r") else "\n"
     source = source_text(name, text.replace("\r\n", "\n"))
@@ -34,8 +47,9 @@ def format_source(text: str, name: str = "<text>") -> str:
     if errors or parsed.tree is None:
         raise IrlxError(errors)
     mended = source_text(name, repaired(source.text, parsed.findings))
-    formatted = _settled(mended)
-    lost = what_is_lost(source, parsed, source_text(name, formatted))
+    declared = declared_ports(mended, data_lists, cell_names)
+    formatted = _settled(declared.source)
+    lost = what_is_lost(source, parsed, source_text(name, formatted), declared)
     if lost:
         raise _given_up(source, lost)
     return formatted.replace("\n", ends) if ends != "\n" else formatted
