@@ -252,7 +252,8 @@ class Execution:
     @property
     def warnings(self) -> list[Diagnostic]:
         """Warnings of the blocks executed so far."""
-        return self._pacer.warnings
+        own = self._interpretation.warnings if self._interpretation is not None else []
+        return [*own, *self._pacer.warnings]
 
     def _locate(self, origin: Origin) -> Place:
         text = self._texts.get(origin.file, self.job.program.source)

@@ -191,7 +191,8 @@ class Motion:
             via, end = stops[number]
             origin = self._origin(via or end, end) if len(stops) > 1 else self._origin(node)
             postures = self._posture_pairs(values[slices["postures"]], len(stops))[number]
-            targets = [self._target(value) for value in values[slices["targets"]]]
+            given = zip(node.targets, values[slices["targets"]], strict=True)
+            targets = [self._target(target, value) for target, value in given]
             course = None
             if via is not None:
                 travel = values[slices["course"]]
@@ -301,7 +302,11 @@ class Motion:
                 raise fail("IRL505", source, given["circ_ori"].span, **data)
         return ArcCourse(via, angle, turning.upper() == "VIA", posture)
 
-    def _target(self, value: RecordValue) -> PoseTarget | JointTarget:
+    def _target(self, node: tree.Expression, value: RecordValue) -> PoseTarget | JointTarget:
+        if value.type == self._type("robtarget"):
+            status = value.values[1]
+            if isinstance(status, int) and status != 0:
+                self._context.machine.warn_once("IRL312", self._context.source, node.span, status=status)
         if value.type in (POSITION, POSE, self._type("robtarget")):
             return pose_target(value)
         return JointTarget(si_values(value, self._context.setting))

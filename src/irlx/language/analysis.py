@@ -13,7 +13,7 @@ from irlx.language.checking import check_types
 from irlx.language.checking.consequences import standing_alone
 from irlx.language.criteria import check_criterion
 from irlx.language.data_lists import DataListResolver, ImportedList, imports_of, in_order
-from irlx.language.lints import lints_of
+from irlx.language.lints import first_of_each, lints_of
 from irlx.language.modules import ImportedModule, ModuleProblem, exported, missing_exports, no_module
 from irlx.language.moves import check_move
 from irlx.language.names import check_names
@@ -114,7 +114,7 @@ def analyse(
     return Analysis(
         source,
         parsed.tree,
-        in_order(told, source, imports.lists),
+        tuple(first_of_each(in_order(told, source, imports.lists))),
         parsed.comments,
         MappingProxyType({**scope.values, **typed.symbols}),
         MappingProxyType({**scope.types, **typed.types}),

@@ -1,6 +1,6 @@
 """IRL281 to IRL299 and IRL310 to IRL329: what is allowed and seldom meant, told by checks."""
 
-from irlx.diagnostics.codes.code import Code, warning
+from irlx.diagnostics.codes.code import Code, info, warning
 
 LINTS: tuple[Code, ...] = (
     warning("IRL281", "the {kind} '{name}' is never used"),
@@ -27,5 +27,15 @@ LINTS: tuple[Code, ...] = (
         "IRL311",
         "the path that begins here at {begin} does not come back: it ends at {end}",
         "CYCLICSTART brings the posture back where the tool comes back",
+    ),
+    warning(
+        "IRL312",
+        "STATUS {status} of a ROBTARGET is carried and not compared: it chooses no posture",
+        "leave it at 0; a posture is chosen by joint values or by WITH RECONFIGURATION",
+    ),
+    info(
+        "IRL313",
+        "a ROBTARGET does not fix the posture of a robot with {joints} joints",
+        "teach a JOINT, or say WITH RECONFIGURATION, where the posture matters",
     ),
 )

@@ -74,6 +74,8 @@ class Parentheses(Context):
             return Typed(expected)
         if isinstance(expected, Record) and not expected.pattern:
             parts = [self.fitted(item, type) for item, (_, type) in zip(items, expected.fields, strict=True)]
+            if len(parts) > 1:
+                self.status(expected, items[1], parts[1])
         else:
             element = expected.element if isinstance(expected, Array) else REAL
             parts = [self.fitted(item, element) for item in items]
