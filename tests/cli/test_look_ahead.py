@@ -70,7 +70,7 @@ def test_all_else_happens_at_rest_on_the_target(ran, between):
 
 @pytest.mark.parametrize(("off", "seen"), [(-0.5, 1.0), (0.0, 1.0), (0.5, 0.0)])
 def test_what_is_read_and_set_has_the_time_of_the_target(ran, off, seen):
-    """What is read is what the input says when the first move has ended: it changes `off` ticks from there."""
+    """Read is what the input says when the first move has ended; it changes `off` ticks from there."""
     end = ran("lamp := go;").stream.records[1].tick
     assert end > 3
     run = ran("lamp := go;", inputs={"go": [(0, 0), ((end + off) * 0.02, 1)]})
