@@ -10,7 +10,7 @@ from typing import TypeAlias
 from irlx.diagnostics import Diagnostic, Place, SourceText, Span, report
 from irlx.language import tree
 from irlx.language.checking import check_types
-from irlx.language.checking.consequences import standing_alone
+from irlx.language.checking.consequences import standing_alone, without_missing_var
 from irlx.language.criteria import check_criterion
 from irlx.language.data_lists import DataListResolver, ImportedList, imports_of, in_order
 from irlx.language.lints import first_of_each, lints_of
@@ -109,6 +109,7 @@ def analyse(
         complete=parsed.complete and imports.whole,
     )
     findings += standing_alone(typed.findings, (*parsed.findings, *imports.findings))
+    findings = without_missing_var(findings, parsed.tree, parsed.findings)
     if lints and parsed.complete:
         findings += lints_of(parsed.tree, source, typed)
     findings += on_imports
