@@ -156,10 +156,9 @@ def test_nothing_else_may_be_added(monkeypatch, spoiled):
 
     honest = ports.declared_ports
 
-    def wrong(source, *around):
-        made = honest(source, *around)
-        text = made.source.text.replace("OUT_1 AT 1", spoiled)
-        return ports.DeclaredPorts(source_text(source.name, text), made.written, made.nodes)
+    def wrong(reading, *around):
+        made = honest(reading, *around)
+        return ports.DeclaredPorts(made.text.replace("OUT_1 AT 1", spoiled), made.written, made.nodes)
 
     monkeypatch.setattr(formatter, "declared_ports", wrong)
     with pytest.raises(irlx.IrlxError) as caught:

@@ -10,8 +10,8 @@ from typing import Any, TypeAlias
 from irlx.diagnostics import SourceText, Span
 from irlx.language import tree
 from irlx.language.format.ports import DeclaredPorts
+from irlx.language.format.reading import Reading
 from irlx.language.lexing import Lexed, lex
-from irlx.language.parser import Parse, parse
 from irlx.language.source import source_text
 
 __all__ = ["what_is_lost"]
@@ -20,20 +20,19 @@ _Root: TypeAlias = "tree.Program | tree.Module | tree.DataList"
 _SPELLED = frozenset({"NAME", "INT", "REAL", "STRING"})
 
 
-def what_is_lost(before: SourceText, parsed: Parse, after: SourceText, ports: DeclaredPorts) -> str:
+def what_is_lost(before: Reading, after: Reading, ports: DeclaredPorts) -> str:
     """What of a text is not the same in its formatted form, or '' where all is.
 
     Nothing but the declarations of `ports` may be there that was not before.
     """
-    again = parse(after)
-    faulty = any(finding.code.startswith("IRL1") for finding in again.findings)
-    if faulty or _without(again.tree, ports.nodes) != parsed.tree:
+    faulty = any(finding.code.startswith("IRL1") for finding in after.parsed.findings)
+    if faulty or _without(after.parsed.tree, ports.nodes) != before.parsed.tree:
         return "the meaning of the program"
-    old, new = lex(before), lex(after)
-    added = _spellings(lex(source_text(after.name, ports.written))) if ports.written else []
+    old, new = before.parsed.lexed, after.parsed.lexed
+    added = _spellings(lex(source_text("", ports.written))) if ports.written else []
     if not _differs_by(_spellings(old), _spellings(new), added):
         return "the spelling of a name or a literal"
-    if _comments(before, old.comments) != _comments(after, new.comments):
+    if _comments(before.source, old.comments) != _comments(after.source, new.comments):
         return "every comment"
     return ""
 

@@ -11,7 +11,8 @@ from irlx.diagnostics import SourceText
 from irlx.language import tree
 from irlx.language.builtins import PORT_NAME
 from irlx.language.data_lists import DataListResolver, imports_of
-from irlx.language.lexing import Lexed, lex
+from irlx.language.format.reading import Reading
+from irlx.language.lexing import Lexed
 from irlx.language.names import check_names
 from irlx.language.parser import Parse, parse
 from irlx.language.source import source_text
@@ -32,35 +33,33 @@ _ITEMS = (tree.VarDeclaration, tree.SignalDeclaration)
 class DeclaredPorts:
     """A text with the declarations that it lacked, as they are written, and as nodes of its tree."""
 
-    source: SourceText
+    text: str
     written: str = ""
     nodes: tuple[tree.Declaration, ...] = ()
 
 
 def declared_ports(
-    source: SourceText, data_lists: DataListResolver | None = None, cell_names: CellNames | None = None
+    reading: Reading, data_lists: DataListResolver | None = None, cell_names: CellNames | None = None
 ) -> DeclaredPorts:
     """A text without errors, with a declaration of each port that is used without one and is not ignored.
 
     A name like OUT_3 may come from a data list: where one is imported that cannot be read, nothing is added.
     """
-    if _ANY_PORT.search(source.text) is None:
-        return DeclaredPorts(source)
-    parsed = parse(source)
+    source, parsed = reading.source, reading.parsed
     root = parsed.tree
-    if root is None or isinstance(root, tree.DataList):
-        return DeclaredPorts(source)
+    if _ANY_PORT.search(source.text) is None or root is None or isinstance(root, tree.DataList):
+        return DeclaredPorts(source.text)
     names = _undeclared(source, parsed, root, data_lists, cell_names)
     if not names:
-        return DeclaredPorts(source)
+        return DeclaredPorts(source.text)
     written = _declarations(names)
-    offset, before, after = _gap(source, lex(source), root, min(name.span.start for name in names))
+    offset, before, after = _gap(source, parsed.lexed, root, min(name.span.start for name in names))
     rest = source.text[offset:]
     after = "" if rest.lstrip(" ").startswith("\n") else after
     text = f"{source.text[:offset]}{before}{written}{after}{rest}"
     alone = parse(source_text(source.name, f"PROGRAM p; VAR {written} BEGIN ENDPROGRAM")).tree
     assert isinstance(alone, tree.Program)
-    return DeclaredPorts(source_text(source.name, text), written, alone.declarations)
+    return DeclaredPorts(text, written, alone.declarations)
 
 
 def _undeclared(
