@@ -107,3 +107,14 @@ def test_a_found_cell_loads_no_numeric_library_either(tmp_path, cell):
         [sys.executable, "-c", code], check=True, timeout=60, capture_output=True, text=True
     )
     assert done.stdout == f"{int(bool(cell))}\n"
+
+
+@pytest.mark.req("LANG-53")
+def test_notes_are_counted_for_themselves(tmp_path, capsys):
+    target = "ROBTARGET(POSE((1, 2, 3), ORIZYX(0, 0, 0)), 4)"
+    path = program(tmp_path, f"VAR ROBTARGET: t := {target};", "MOVE PTP t;")
+    (tmp_path / "p.toml").write_text(CELL, encoding="utf-8")
+    assert main(["check", str(path)]) == 0
+    told = capsys.readouterr()
+    assert told.out == f"{path}: 0 errors, 1 warning, 1 note\n"
+    assert "info IRL313: a ROBTARGET does not fix the posture of a robot with 7 joints" in told.err
