@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx._version import __version__
-from irlx.blocks import Block, Origin, Question
+from irlx.blocks import AskPause, Block, Origin, Question
 from irlx.cell.cell import Cell
 from irlx.cell.errors import CellError
 from irlx.cell.find import is_file
@@ -30,6 +30,7 @@ from irlx.pacing.inputs import InputFunction, Inputs
 from irlx.pacing.lookahead import Lookahead
 from irlx.pacing.notes import Notes
 from irlx.pacing.pacer import Pacer
+from irlx.pacing.pauses import PauseAborted, PauseFunction, Pauses, is_time
 from irlx.pacing.situation import PacingSetup
 from irlx.program import Program, ProgramError, cell_path, load
 from irlx.promises import CONDITION, LONGEST_TICK, SHORTEST_TICK
@@ -59,7 +60,7 @@ class Job:
     """A program and the cell it runs in, checked against each other; tick in ns.
 
     A move may take `max_slow` times as long as programmed, the program may execute `max_steps` statements;
-    `inputs` are the cell's with those of the caller.
+    `inputs` are the cell's with those of the caller, `pauses` say how long each PAUSE lasts.
     """
 
     program: Program
@@ -68,6 +69,7 @@ class Job:
     max_slow: float = inf
     max_steps: int = MAX_STEPS
     inputs: Inputs = field(default_factory=Inputs)
+    pauses: Pauses = field(default_factory=Pauses)
 
 
 def prepare(
@@ -77,6 +79,8 @@ def prepare(
     max_slow: float | None = None,
     max_steps: int | None = None,
     inputs: InputsGiven = None,
+    pause_s: float = 0.0,
+    on_pause: PauseFunction | None = None,
 ) -> Job:
     """Load what a run needs.
 
@@ -94,12 +98,16 @@ def prepare(
     steps = MAX_STEPS if max_steps is None else max_steps
     if steps < 1:
         raise IrlxError(report("IRL006", option="--max-steps", value=f"{steps}", cause="at least 1"))
+    if not is_time(pause_s):
+        cause = "a pause lasts a number of seconds, 0 or more"
+        raise IrlxError(report("IRL006", option="--pause", value=f"{pause_s:g}", cause=cause))
+    pauses = Pauses(pause_s, on_pause)
     if tick_ms is None:
-        return Job(program, loaded, loaded.tick_ns, slowest, steps, said)
+        return Job(program, loaded, loaded.tick_ns, slowest, steps, said, pauses)
     if not LEAST_TICK_MS <= tick_ms <= LONGEST_TICK_MS:
         cause = f"a tick lasts {LEAST_TICK_MS:g} to {LONGEST_TICK_MS:g} ms"
         raise IrlxError(report("IRL006", option="--tick", value=f"{tick_ms:g}", cause=cause))
-    return Job(program, loaded, round(tick_ms * 1e6), slowest, steps, said)
+    return Job(program, loaded, round(tick_ms * 1e6), slowest, steps, said, pauses)
 
 
 def inputs_of(cell: Cell, given: InputsGiven) -> Inputs:
@@ -155,6 +163,8 @@ class Execution:
                 return
             except IrlxError:
                 raise
+            except PauseAborted as aborted:
+                raise aborted.error from None
             except Exception as error:
                 if os.environ.get("IRLX_DEBUG"):
                     raise
@@ -164,7 +174,7 @@ class Execution:
 
     def _carried_out(self) -> Iterator[Executed]:
         """What becomes of the blocks; the program runs ahead of them while its moves pass their targets."""
-        pacer, ahead = self._pacer, Lookahead(self._locate, self._pacer.notes)
+        ahead = Lookahead(self._locate, self._pacer.notes)
         source, reply = self._interpreted(), None
         while True:
             try:
@@ -178,7 +188,7 @@ class Execution:
             reply = None
             if isinstance(item, Question):
                 yield from self._all(ahead.before(item))
-                reply = pacer.answer(item)
+                reply = self._answer(item)
             else:
                 yield from self._all(ahead.take(item))
 
@@ -196,13 +206,21 @@ class Execution:
             except StopIteration:
                 return
             reply = None
-            if isinstance(item, Question):
+            if isinstance(item, AskPause):
+                reply = self._answer(item)
+            elif isinstance(item, Question):
                 self._move_to_the_end_of(waiting)
                 waiting.clear()
-                reply = self._pacer.answer(item)
+                reply = self._answer(item)
             else:
                 yield item
                 waiting.append(item)
+
+    def _answer(self, question: Question) -> tuple[float, ...]:
+        """What the operator says to a pause, the machine to all else."""
+        if isinstance(question, AskPause):
+            return self.job.pauses.answer(question, self._locate)
+        return self._pacer.answer(question)
 
     def _move_to_the_end_of(self, blocks: Sequence[Block]) -> None:
         """Carry out blocks for their effect on where the robot stands."""
@@ -258,7 +276,8 @@ class Execution:
     @property
     def warnings(self) -> list[Diagnostic]:
         """Warnings of the blocks executed so far."""
-        return self._pacer.warnings
+        own = self._interpretation.warnings if self._interpretation is not None else []
+        return [*own, *self._pacer.warnings]
 
     def _locate(self, origin: Origin) -> Place:
         text = self._texts.get(origin.file, self.job.program.source)
@@ -326,18 +345,20 @@ def run(
     max_steps: int | None = None,
     inputs: InputsGiven = None,
     write_data: bool = False,
+    pause_s: float = 0.0,
 ) -> Run:
     """Interpret a program, move its robot, and return the joint stream.
 
     `cell`: path of the cell file, by default found beside the program; `tick_ms` overrides the
     cell's tick; `explain_tick` asks for `Run.explanation` of that tick; a move that limits make
     more than `max_slow` times as long as programmed is an error, and so are more than `max_steps`
-    statements (by default 10,000,000); `inputs` as `InputsGiven`, in place of the cell's. With `write_data`,
-    values of data lists that the program has changed are written to their files after a complete run.
+    statements (by default 10,000,000); `inputs` as `InputsGiven`, in place of the cell's; each PAUSE lasts
+    `pause_s` s, rounded up to whole ticks. With `write_data`, values of data
+    lists that the program has changed are written to their files after a complete run.
     Raises ProgramError and CellError before anything moves, RunError (with what was executed until then)
     once it does, RunInterrupted on Ctrl-C.
     """
-    job = prepare(program, cell, tick_ms, max_slow, max_steps, inputs)
+    job = prepare(program, cell, tick_ms, max_slow, max_steps, inputs, pause_s)
     execution = Execution(job)
     finished = execute(execution, progress, explain_tick)
     if not write_data:
@@ -379,13 +400,17 @@ def stream(
     max_slow: float | None = None,
     max_steps: int | None = None,
     inputs: InputsGiven = None,
+    pause_s: float = 0.0,
+    on_pause: PauseFunction | None = None,
 ) -> Iterator[Sample]:
     """Samples of a run, one after another, motion by motion as they are asked for.
 
-    The same samples as `run` gives. Iteration may stop at any sample. What cannot be prepared raises
+    The same samples as `run` gives. Iteration may stop at any sample. At each PAUSE, all samples before it
+    handed out, `on_pause` is called with its place; the program goes on when it returns, after the time, s,
+    that it returns, or `pause_s` for None; what it raises comes out here. What cannot be prepared raises
     here, what goes wrong in motion at the sample it keeps from coming, as IrlxError.
     """
-    return _samples(prepare(program, cell, tick_ms, max_slow, max_steps, inputs))
+    return _samples(prepare(program, cell, tick_ms, max_slow, max_steps, inputs, pause_s, on_pause))
 
 
 def _samples(job: Job) -> Iterator[Sample]:

@@ -21,11 +21,12 @@ from irlx.blocks import (
     CriterionBlock,
     FreezeBlock,
     LimitSwitchBlock,
+    MachineQuestion,
     MoveBlock,
     MoveKind,
     Origin,
+    PauseBlock,
     PoseTarget,
-    Question,
     ReconfigureBlock,
     ToolBlock,
     WaitBlock,
@@ -71,7 +72,7 @@ class Pacer:
         self.notes = Notes(self.warnings)
         self._last_way = (0.0, 0.0)
 
-    def answer(self, question: Question) -> tuple[float, ...]:
+    def answer(self, question: MachineQuestion) -> tuple[float, ...]:
         """Answer to a question of the interpreter, all blocks before it executed.
 
         Raises PacingError, IRL522, for the posture of a pose that none reaches.
@@ -156,7 +157,7 @@ class Pacer:
         if isinstance(block, ReconfigureBlock):
             return self._reconfigure(block)
         place = self._locate(block.origin)
-        if isinstance(block, WaitBlock):
+        if isinstance(block, WaitBlock | PauseBlock):
             return self._wait(block, place)
         if isinstance(block, LimitSwitchBlock):
             self.warnings += check_limit(block, self._robot, self._setup.limits, self.q, place)
@@ -202,7 +203,7 @@ class Pacer:
         self.tick += len(rows)
         return replace(rows, limits=in_force.limits)
 
-    def _wait(self, block: WaitBlock, place: Place) -> MotionRows | None:
+    def _wait(self, block: WaitBlock | PauseBlock, place: Place) -> MotionRows | None:
         setup = self._setup
         rows = waited(block, self.q, setup.dt, self.tick + 1, setup.kinematics, place)
         return self._moved(rows, self._situation.in_force())

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.blocks import MoveBlock, ReconfigureBlock, WaitBlock
+from irlx.blocks import MoveBlock, PauseBlock, ReconfigureBlock, WaitBlock
 from irlx.motion.time_law import TimeLaw
 from irlx.pacing.demand import Demand
 from irlx.pacing.posture_term import PostureTerm
@@ -53,7 +53,7 @@ class MotionRows:
     `limits` in force, None for the robot's own; `path`, None where no path was asked for.
     """
 
-    block: MoveBlock | ReconfigureBlock | WaitBlock
+    block: MoveBlock | ReconfigureBlock | WaitBlock | PauseBlock
     first_tick: int
     q: Array
     tool_position: Array

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from irlx.blocks import MotionLaw, MoveBlock, ReconfigureBlock, WaitBlock
+from irlx.blocks import MotionLaw, MoveBlock, PauseBlock, ReconfigureBlock, WaitBlock
 from irlx.streams.joint_stream import Integers
 from irlx.verifier.findings.finding import FAILED, NOT_CHECKED, OK, Check
 from irlx.verifier.outline import Outline
@@ -96,7 +96,7 @@ def _misfit(outline: Outline) -> tuple[int, str] | None:
             return record.tick, f"block {block.id}: {reason}"
         if block.id != due:
             return record.tick, f"block {block.id} stands where {due} is due: one is missing or added"
-        moves = isinstance(block, MoveBlock | ReconfigureBlock | WaitBlock)
+        moves = isinstance(block, MoveBlock | ReconfigureBlock | WaitBlock | PauseBlock)
         begins[block.id] = record.tick if moves else -1
         if record.tick != standing:
             late = f" (the samples end at {rows - 1})" if record.tick >= rows else ""

@@ -18,6 +18,7 @@ from irlx.blocks import (
     MotionLaw,
     MoveBlock,
     MoveKind,
+    PauseBlock,
     ReconfigureBlock,
     SignalBlock,
     SignalKind,
@@ -131,7 +132,7 @@ def _wrong_weights(block: WeightsBlock, joints: int) -> str:
     return "" if odd is None else f"a weight is {odd}"
 
 
-def _wrong_wait(block: WaitBlock, joints: int) -> str:
+def _wrong_wait(block: WaitBlock | PauseBlock, joints: int) -> str:
     return "" if 0.0 <= block.duration < np.inf else f"it waits {block.duration} s"
 
 
@@ -151,6 +152,7 @@ _OWN: dict[type[Block], Callable[[Any, int], str]] = {
     ToolBlock: _wrong_tool,
     WeightsBlock: _wrong_weights,
     WaitBlock: _wrong_wait,
+    PauseBlock: _wrong_wait,
     SignalBlock: _wrong_signal,
     InputBlock: _wrong_signal,
     FreezeBlock: _wrong_freeze,

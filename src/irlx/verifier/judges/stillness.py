@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.blocks import FreezeBlock, WaitBlock
+from irlx.blocks import FreezeBlock, PauseBlock, WaitBlock
 from irlx.promises import TICK_SHARE
 from irlx.streams.joint_stream import Floats
 from irlx.verifier.evidence import Evidence
@@ -46,7 +46,7 @@ class StopChecks:
 
 
 class WaitChecks:
-    """While it waits the robot stands, bit by bit, and as long as told: whole ticks, not one too many."""
+    """In waits and pauses the robot stands, bit by bit, and as long as told: whole ticks, not one more."""
 
     def __init__(self, evidence: Evidence) -> None:
         outline = evidence.outline
@@ -56,14 +56,14 @@ class WaitChecks:
         self._waits = {
             record.block.id: record.block.duration
             for record in outline.records
-            if isinstance(record.block, WaitBlock)
+            if isinstance(record.block, WaitBlock | PauseBlock)
         }
         lasts = {identity: (first, last) for identity, first, last in outline.segments()}
         for record in outline.records:
-            if isinstance(record.block, WaitBlock):
+            if isinstance(record.block, WaitBlock | PauseBlock):
                 self._add_time(record.block, record.tick, lasts)
 
-    def _add_time(self, block: WaitBlock, tick: int, lasts: dict[int, tuple[int, int]]) -> None:
+    def _add_time(self, block: WaitBlock | PauseBlock, tick: int, lasts: dict[int, tuple[int, int]]) -> None:
         first, last = lasts.get(block.id, (tick + 1, tick))
         rows, dt = last - first + 1, self._outline.header.dt
         unfinished = last == self._outline.rows - 1 and not self._outline.complete
