@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field, replace
 from math import inf
 from pathlib import Path, PurePath
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,9 @@ from irlx.cell.load import load_cell
 from irlx.cell.setting import setting_of
 from irlx.diagnostics import Diagnostic, IrlxError, Place, Span, report
 from irlx.diagnostics.diagnostic import near_matches
+from irlx.interpreter.channels.channels import Channels, Told
+from irlx.interpreter.channels.pieces import InputGiven
+from irlx.interpreter.channels.setup import ChannelSetup
 from irlx.interpreter.interpret import MAX_STEPS, Interpretation
 from irlx.pacing.explanation import TickExplanation
 from irlx.pacing.explanation import explain_tick as explain_row
@@ -56,7 +60,7 @@ class Job:
     """A program and the cell it runs in, checked against each other; tick in ns.
 
     A move may take `max_slow` times as long as programmed, the program may execute `max_steps` statements;
-    `inputs` are the cell's with those of the caller.
+    `inputs` are the cell's with those of the caller; `channels` what the program may read and write.
     """
 
     program: Program
@@ -65,6 +69,7 @@ class Job:
     max_slow: float = inf
     max_steps: int = MAX_STEPS
     inputs: Inputs = field(default_factory=Inputs)
+    channels: ChannelSetup = field(default_factory=ChannelSetup)
 
 
 def prepare(
@@ -74,8 +79,11 @@ def prepare(
     max_slow: float | None = None,
     max_steps: int | None = None,
     inputs: InputsGiven = None,
+    files: PathLike | None = None,
+    input: InputGiven = None,
+    output: IO[str] | None = None,
 ) -> Job:
-    """Load what a run needs.
+    """Load what a run needs; `files`, `input` and `output` as in `run`.
 
     `cell` None: the file that SYSTEM SPECIFICATION names, else the program's own name with .toml.
     Raises ProgramError, CellError, or IrlxError with IRL006 for a number out of range.
@@ -91,12 +99,26 @@ def prepare(
     steps = MAX_STEPS if max_steps is None else max_steps
     if steps < 1:
         raise IrlxError(report("IRL006", option="--max-steps", value=f"{steps}", cause="at least 1"))
+    channels = _channels(program, loaded, files, input, output)
     if tick_ms is None:
-        return Job(program, loaded, loaded.tick_ns, slowest, steps, said)
+        return Job(program, loaded, loaded.tick_ns, slowest, steps, said, channels)
     if not LEAST_TICK_MS <= tick_ms <= LONGEST_TICK_MS:
         cause = f"a tick lasts {LEAST_TICK_MS:g} to {LONGEST_TICK_MS:g} ms"
         raise IrlxError(report("IRL006", option="--tick", value=f"{tick_ms:g}", cause=cause))
-    return Job(program, loaded, round(tick_ms * 1e6), slowest, steps, said)
+    return Job(program, loaded, round(tick_ms * 1e6), slowest, steps, said, channels)
+
+
+def _channels(
+    program: Program, cell: Cell, files: PathLike | None, input: InputGiven, output: IO[str] | None
+) -> ChannelSetup:
+    """What a program may read and write. Raises IrlxError, IRL006, for a folder that is none."""
+    folder = program.path.parent if files is None else Path(files)
+    if files is not None and not folder.is_dir():
+        raise IrlxError(report("IRL006", option="--files", value=str(files), cause="there is no such folder"))
+    own = {found.path: "a data list of the program" for found in program.all_lists}
+    own |= {module.path: "a module of the program" for module in program.modules}
+    own |= {program.path: "the program itself", Path(cell.file): "the cell of the program"}
+    return ChannelSetup(folder, own, input, output.write if output is not None else None)
 
 
 def inputs_of(cell: Cell, given: InputsGiven) -> Inputs:
@@ -149,11 +171,16 @@ class Execution:
         self._pacer = Pacer(setup, self._locate)
         texts = (job.program.source, *(module.source for module in job.program.modules))
         self._interpretation: Interpretation | None = None
+        self._left_open: list[Diagnostic] = []
+        self.channels = job.channels.on_disk()
         self._texts = {PurePath(text.name).name: text for text in texts}
 
     def __iter__(self) -> Iterator[Executed]:
         """Execute the program block by block. Raises IrlxError where it cannot go on (IRL090: by a fault)."""
-        source = self._blocks(self._pacer.answer)
+        with closing(self._blocks(self._pacer.answer, self.channels)) as source:
+            yield from self._executed(source)
+
+    def _executed(self, source: Iterator[Block]) -> Iterator[Executed]:
         while True:
             try:
                 block = next(source)
@@ -170,8 +197,12 @@ class Execution:
                 raise IrlxError(report("IRL090", cause=f"{type(error).__name__}: {error}")) from error
             yield executed
 
-    def blocks(self) -> Iterator[Block]:
-        """Blocks of the program; nothing moves until it asks for the posture that its moves lead to."""
+    def blocks(self, told: Told | None = None) -> Iterator[Block]:
+        """Blocks of the program; nothing moves until it asks for the posture that its moves lead to.
+
+        Files are written in memory only; `told` is called with what is written.
+        """
+        self.channels = self.job.channels.in_memory(told)
         waiting: list[Block] = []
 
         def answer(question: Question) -> tuple[float, ...]:
@@ -180,16 +211,36 @@ class Execution:
             waiting.clear()
             return self._pacer.answer(question)
 
-        for block in self._blocks(answer):
+        for block in self._blocks(answer, self.channels):
             yield block
             waiting.append(block)
 
-    def _blocks(self, answer: Callable[[Question], tuple[float, ...]]) -> Iterator[Block]:
-        """Blocks as the interpreter yields them, its questions answered on the way."""
+    def _blocks(
+        self, answer: Callable[[Question], tuple[float, ...]], channels: Channels
+    ) -> Generator[Block, None, None]:
+        """Blocks as the interpreter yields them, its questions answered on the way; then files are closed."""
+        try:
+            yield from self._interpreted(answer, channels)
+            self._left_open = channels.finish()
+        finally:
+            channels.finish()
+        lost = [found for found in self._left_open if found.is_error]
+        if lost:
+            raise IrlxError(lost)
+
+    def _interpreted(
+        self, answer: Callable[[Question], tuple[float, ...]], channels: Channels
+    ) -> Iterator[Block]:
         job, program = self.job, self.job.program
         setting = setting_of(job.cell)
         ready = Interpretation(
-            program.tree, program.source, setting, program.data_lists, program.modules, job.max_steps
+            program.tree,
+            program.source,
+            setting,
+            program.data_lists,
+            program.modules,
+            job.max_steps,
+            channels,
         )
         self._interpretation, source = ready, ready.run()
         reply = None
@@ -239,7 +290,7 @@ class Execution:
     @property
     def warnings(self) -> list[Diagnostic]:
         """Warnings of the blocks executed so far."""
-        return self._pacer.warnings
+        return [*self._pacer.warnings, *(found for found in self._left_open if not found.is_error)]
 
     def _locate(self, origin: Origin) -> Place:
         text = self._texts.get(origin.file, self.job.program.source)
@@ -307,6 +358,9 @@ def run(
     max_steps: int | None = None,
     inputs: InputsGiven = None,
     write_data: bool = False,
+    files: PathLike | None = None,
+    input: InputGiven = None,
+    output: IO[str] | None = None,
 ) -> Run:
     """Interpret a program, move its robot, and return the joint stream.
 
@@ -315,10 +369,13 @@ def run(
     more than `max_slow` times as long as programmed is an error, and so are more than `max_steps`
     statements (by default 10,000,000); `inputs` as `InputsGiven`, in place of the cell's. With `write_data`,
     values of data lists that the program has changed are written to their files after a complete run.
+    `files`: the folder that OPEN finds and makes files in, by default that of the program; `input`: what
+    STANDARD_IN reads, a text or a file that is open; `output`: what gets the text for STANDARD_OUT while it
+    is written, for instance sys.stdout, beside `Run.output`.
     Raises ProgramError and CellError before anything moves, RunError (with what was executed until then)
     once it does, RunInterrupted on Ctrl-C.
     """
-    job = prepare(program, cell, tick_ms, max_slow, max_steps, inputs)
+    job = prepare(program, cell, tick_ms, max_slow, max_steps, inputs, files, input, output)
     execution = Execution(job)
     finished = execute(execution, progress, explain_tick)
     if not write_data:
@@ -341,12 +398,13 @@ def execute(execution: Execution, progress: Progress | None = None, explain_tick
     except IrlxError as error:
         known = (*_warnings(job), *execution.warnings)
         partial = recording.finish(False, (*known, *error.diagnostics))
-        partial = replace(partial, explanation=explanation)
+        partial = replace(partial, explanation=explanation, output=execution.channels.output)
         raise RunError((*error.diagnostics, *known), partial) from error
     except KeyboardInterrupt as interrupt:
-        raise RunInterrupted(recording.finish(False, (*_warnings(job), *execution.warnings))) from interrupt
+        partial = recording.finish(False, (*_warnings(job), *execution.warnings))
+        raise RunInterrupted(replace(partial, output=execution.channels.output)) from interrupt
     finished = recording.finish(True, (*_warnings(job), *execution.warnings))
-    return replace(finished, explanation=explanation)
+    return replace(finished, explanation=explanation, output=execution.channels.output)
 
 
 def _warnings(job: Job) -> tuple[Diagnostic, ...]:
@@ -360,13 +418,16 @@ def stream(
     max_slow: float | None = None,
     max_steps: int | None = None,
     inputs: InputsGiven = None,
+    files: PathLike | None = None,
+    input: InputGiven = None,
+    output: IO[str] | None = None,
 ) -> Iterator[Sample]:
     """Samples of a run, one after another, motion by motion as they are asked for.
 
     The same samples as `run` gives. Iteration may stop at any sample. What cannot be prepared raises
     here, what goes wrong in motion at the sample it keeps from coming, as IrlxError.
     """
-    return _samples(prepare(program, cell, tick_ms, max_slow, max_steps, inputs))
+    return _samples(prepare(program, cell, tick_ms, max_slow, max_steps, inputs, files, input, output))
 
 
 def _samples(job: Job) -> Iterator[Sample]:

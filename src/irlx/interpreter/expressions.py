@@ -8,6 +8,7 @@ from functools import partial
 from irlx.diagnostics import SourceText
 from irlx.interpreter.asking import ACTUAL, ASKING, Asking
 from irlx.interpreter.calls import Calls
+from irlx.interpreter.channel_access import end_of_file
 from irlx.interpreter.code import Frame, Step
 from irlx.interpreter.compiled import Compiled, Run, constant, failing, first_failing, folded
 from irlx.interpreter.context import Context
@@ -119,7 +120,8 @@ class Expressions:
             signal = self.designators.signal(node.base)
             reads = signal is not None and signal.is_input
             return reads or node.base.key in ACTUAL or self.is_routine(node)
-        return self.is_routine(node) or (isinstance(node, tree.FunctionCall) and node.name.key in ASKING)
+        asks = isinstance(node, tree.FunctionCall) and (node.name.key in ASKING or node.name.key == "eof")
+        return asks or self.is_routine(node)
 
     def is_routine(self, node: tree.Node) -> bool:
         """Whether an expression is the call of a routine of the program."""
@@ -241,6 +243,8 @@ class Expressions:
             return self._calls.function(routine, arguments, node)
         if name.key in ASKING:
             return self._asking.call(name, arguments, node)
+        if name.key == "eof":
+            return end_of_file(self, arguments, node)
         function = FUNCTIONS.get(name.key)
         if function is not None:
             return self._built_in(function, arguments, node)

@@ -34,6 +34,8 @@ class Facts:
     """What lints need to know of a program, gathered on the way: values at limits and targets of moves."""
 
     limits: list[tuple[tree.LimitSwitch | tree.WithLimit, Settled, Settled]] = field(default_factory=list)
+    files: list[tuple[str, Entry, tree.Name]] = field(default_factory=list)
+    """What is done with variables of type FILE: a word such as OPEN, the variable, its name there."""
     targets: dict[int, tuple[Type, Settled]] = field(default_factory=dict)
     """Types and values of the targets of the main MOVEs, by the identity of their nodes."""
 

@@ -20,6 +20,7 @@ from irlx.language.types import (
     Record,
     Type,
     field_names,
+    holds_files,
     longest_field,
     same_type,
 )
@@ -51,9 +52,11 @@ class Designators(Context):
             return NOTHING
         if entry.signature is not None or entry.kind in NOT_A_VALUE:
             return self._routine(entry, node)
-        if not node.selectors:
-            return Typed(entry.type, entry.value)
-        return Typed(self.part(entry.type, node))
+        type = self.part(entry.type, node) if node.selectors else entry.type
+        if holds_files(type):
+            self.add("IRL267", node, what="copied")
+            return NOTHING
+        return Typed(type, None if node.selectors else entry.value)
 
     def _routine(self, entry: Entry, node: tree.Designator) -> Typed:
         signature = entry.signature

@@ -7,6 +7,7 @@ from irlx.language import tree
 from irlx.language.checking import TypedText
 from irlx.language.lints.bounds import crossed_bounds
 from irlx.language.lints.closed_path import open_cycles
+from irlx.language.lints.files import open_files
 from irlx.language.lints.flow import flow_lints
 from irlx.language.lints.unused import unused_names
 
@@ -18,6 +19,7 @@ def lints_of(
     if isinstance(root, tree.DataList):
         return []
     found = [*typed.lints, *flow_lints(root, source), *crossed_bounds(typed.facts, source)]
+    found += open_files(root, typed, source)
     if isinstance(root, tree.Program):
         found += unused_names(typed, source)
         found += open_cycles(root, typed.facts, source)
