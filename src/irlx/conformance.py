@@ -179,7 +179,9 @@ def _output(case: Case) -> str:
         pass
     text, files = execution.channels.output, execution.channels.files
     written = files.written if isinstance(files, MemoryFiles) else {}
-    return text + "".join(f"==> {name} <==\n{content.decode('utf-8')}" for name, content in written.items())
+    return text + "".join(
+        f"==> {name} <==\n{content.decode('utf-8', 'replace')}" for name, content in written.items()
+    )
 
 
 def _execution(case: Case) -> Execution:

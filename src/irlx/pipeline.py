@@ -111,10 +111,13 @@ def prepare(
 def _channels(
     program: Program, cell: Cell, files: PathLike | None, input: InputGiven, output: IO[str] | None
 ) -> ChannelSetup:
-    """What a program may read and write. Raises IrlxError, IRL006, for a folder that is none."""
+    """What a program may read and write. Raises IrlxError, IRL006, for what is no folder or input."""
     folder = program.path.parent if files is None else Path(files)
     if files is not None and not folder.is_dir():
         raise IrlxError(report("IRL006", option="--files", value=str(files), cause="there is no such folder"))
+    if not (input is None or isinstance(input, str) or hasattr(input, "readline")):
+        cause = "a text, or a file that is open to be read"
+        raise IrlxError(report("IRL006", option="input=", value=repr(input), cause=cause))
     own = {found.path: "a data list of the program" for found in program.all_lists}
     own |= {module.path: "a module of the program" for module in program.modules}
     own |= {program.path: "the program itself", Path(cell.file): "the cell of the program"}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable
 
@@ -33,7 +34,17 @@ class ProgramText:
                 self._stream.flush()
             except BrokenPipeError:
                 self._gone = True
+            except OSError:
+                self._gone = True
+                self._drop()
+                raise
         return len(text)
+
+    def _drop(self) -> None:
+        """Let what cannot be written go: else Python tries again at its end, and speaks of it."""
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, self._stream.fileno())
+        os.close(nowhere)
 
     def end_line(self) -> None:
         """Begin a new line, unless stdout is at the beginning of one."""

@@ -8,7 +8,7 @@ FILES = (
         "'{name}' is outside of the folder of the program's files: {cause}",
         "another folder is named by --files DIR, or files= in Python",
     ),
-    error("IRL541", "there is no file '{name}' in {folder}{near}"),
+    error("IRL541", "there is no file '{name}'{near}", "files are looked for in {folder}"),
     error("IRL542", "the file '{name}' is not open", "OPEN it first"),
     error("IRL543", "'{variable}' is open already, on '{name}'", "CLOSE it first"),
     error(

@@ -64,7 +64,7 @@ class MemoryFiles(Files):
     def _missing(self, name: str) -> ChannelFault:
         if self._folder is not None:
             return self._folder.missing(name)
-        return ChannelFault("IRL541", name=name, folder="what the program has written", near="")
+        return ChannelFault("IRL541", name=name, folder="memory", near="")
 
 
 def _plain(name: str) -> list[str]:

@@ -74,6 +74,8 @@ class Calls(Context):
         return Typed(signature.result or UNKNOWN)
 
     def _built_in(self, node: tree.FunctionCall, signature: Signature) -> Typed:
+        if signature.name == "EOF" and not node.arguments:
+            self.facts.standard.add("IN")
         found = self.arguments(signature, node.arguments, node)
         if signature.like_first:
             return Typed(found[0].type) if found else NOTHING
@@ -132,7 +134,7 @@ class Calls(Context):
             where = f"the VAR parameter '{parameter.name}' of {signature.name}"
             if not parameter.name:
                 where = signature.name
-            self.file_use(argument, where if not parameter.name else "")
+            self.file_use(argument, signature.name if not parameter.name else "")
             self.variable_argument(argument, where, parameter.types[0])
             return NOTHING
         if len(parameter.types) == 1:
@@ -148,7 +150,9 @@ class Calls(Context):
             if isinstance(argument, tree.FormattedValue):
                 self.formatted(argument)
             else:
-                self.fitted(argument, UNKNOWN)
+                trial = self.trial(lambda argument=argument: self.fitted(argument, UNKNOWN))  # type: ignore[misc]
+                # A FILE may stand there: what takes it is not known.
+                self.keep(trial._replace(findings=[f for f in trial.findings if f.code != "IRL267"]))
 
     def formatted(self, node: tree.FormattedValue) -> Typed:
         """A value with its layout; a precision is for numbers."""

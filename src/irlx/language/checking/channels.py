@@ -73,6 +73,7 @@ class Channels(Expressions):
                 if type is FILE:
                     self._file(file, call.name.key.upper())
                     return arguments[1:]
+        self.facts.standard.add("IN" if call.name.key == "read" else "OUT")
         return arguments
 
     def _read(self, call: tree.Call) -> None:
@@ -81,8 +82,9 @@ class Channels(Expressions):
             self.add("IRL228", call, function="READ", expected="a variable", found="none")
         for argument in variables:
             self.variable_argument(argument, "READ", None)
-            trial = self.trial(lambda argument=argument: self.typed(argument))  # type: ignore[misc]
-            self._simple(argument, trial.typed.type)
+            if isinstance(argument, tree.Designator):
+                trial = self.trial(lambda node=argument: Typed(self.set_target(node)[0]))  # type: ignore[misc]
+                self._simple(argument, trial.typed.type)
 
     def _written(self, argument: tree.Argument) -> None:
         value = argument.value if isinstance(argument, tree.FormattedValue) else argument
@@ -101,7 +103,10 @@ class Channels(Expressions):
         entry = self.names.value(name.key)
         if entry is None:
             if name.key and name.key != own.casefold():
-                near = near_matches(name.name, [own]) or f"; it may be a FILE variable or {own}"
+                files = [
+                    e.symbol.name.name for e in self.names.values.values() if e.symbol and e.type is FILE
+                ]
+                near = near_matches(name.name, [*files, own]) or f"; it may be a FILE variable or {own}"
                 self._not_standard(part, channel, f"there is no such variable{near}")
         elif entry.type is not FILE or entry.kind not in ("variable", "import"):
             if entry.type is not UNKNOWN:

@@ -36,6 +36,8 @@ class Facts:
     limits: list[tuple[tree.LimitSwitch | tree.WithLimit, Settled, Settled]] = field(default_factory=list)
     files: list[tuple[str, Entry, tree.Name]] = field(default_factory=list)
     """What is done with variables of type FILE: a word such as OPEN, the variable, its name there."""
+    standard: set[str] = field(default_factory=set)
+    """Directions of the standard channels that are used, IN or OUT."""
     targets: dict[int, tuple[Type, Settled]] = field(default_factory=dict)
     """Types and values of the targets of the main MOVEs, by the identity of their nodes."""
 

@@ -18,7 +18,10 @@ def open_files(
         name.key for part in root.declarations if isinstance(part, tree.Export) for name in part.names
     }
     uses: dict[int, tuple[Entry, dict[str, tree.Name]]] = {}
+    unused = {f"STANDARD_{direction}" for direction in {"IN", "OUT"} - typed.facts.standard}
     for what, entry, name in typed.facts.files:
+        if what in unused:
+            continue
         uses.setdefault(id(entry), (entry, {}))[1].setdefault(what, name)
     for entry, found in uses.values():
         symbol = entry.symbol
