@@ -161,7 +161,10 @@ class Executed:
 
 
 class Execution:
-    """One run in progress: a program's blocks, and the pacer that executes them."""
+    """One run in progress: a program's blocks, and the pacer that executes them.
+
+    `channels` are what it reads and writes; `left_open` warns of files that were open at its end.
+    """
 
     def __init__(self, job: Job) -> None:
         self.job = job
@@ -174,7 +177,7 @@ class Execution:
         self._pacer = Pacer(setup, self._locate)
         texts = (job.program.source, *(module.source for module in job.program.modules))
         self._interpretation: Interpretation | None = None
-        self._left_open: list[Diagnostic] = []
+        self.left_open: list[Diagnostic] = []
         self.channels = job.channels.on_disk()
         self._texts = {PurePath(text.name).name: text for text in texts}
 
@@ -224,10 +227,10 @@ class Execution:
         """Blocks as the interpreter yields them, its questions answered on the way; then files are closed."""
         try:
             yield from self._interpreted(answer, channels)
-            self._left_open = channels.finish()
+            self.left_open = channels.finish()
         finally:
             channels.finish()
-        lost = [found for found in self._left_open if found.is_error]
+        lost = [found for found in self.left_open if found.is_error]
         if lost:
             raise IrlxError(lost)
 
@@ -293,7 +296,7 @@ class Execution:
     @property
     def warnings(self) -> list[Diagnostic]:
         """Warnings of the blocks executed so far."""
-        return [*self._pacer.warnings, *(found for found in self._left_open if not found.is_error)]
+        return [*self._pacer.warnings, *(found for found in self.left_open if not found.is_error)]
 
     def _locate(self, origin: Origin) -> Place:
         text = self._texts.get(origin.file, self.job.program.source)

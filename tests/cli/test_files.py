@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
@@ -293,6 +294,49 @@ def test_blocks_write_no_files(place, inside, folder, names):
         "  WRITE 'log.txt' \"  200.00\\n\"",
         '  WRITE "done"',
     ]
+
+
+@pytest.mark.req("LANG-42")
+def test_blocks_tell_of_open_files(place, inside, folder):
+    place(program("MOVE LIN near; OPEN(f, 'a.txt', 'WRITE'); WRITE(f, 'x');"))
+    done = inside("blocks", "p.irl")
+    assert done.stderr.count("IRL549") == 1
+    assert done.returncode == 0
+    assert not (folder / "a.txt").exists()
+
+
+@pytest.mark.req("LANG-12")
+@pytest.mark.req("LANG-42")
+def test_files_of_a_module(place, folder):
+    """A module has the log, the program opens it by a procedure; messages name the text of the module."""
+    place(
+        "MODULE logbook; EXPORT log, begin_log, note; VAR FILE: log; INT: lines := 0;\n"
+        "PROCEDURE begin_log; BEGIN\nOPEN(log, 'log.txt', 'WRITE'); ENDPROC;\n"
+        "PROCEDURE note(STRING: what); BEGIN lines := lines + 1;\n"
+        "WRITELN(log, lines:3, ' ', what); WRITE(what); ENDPROC;\n"
+        "ENDMODULE",
+        "logbook.irl",
+    )
+    path = place(
+        "PROGRAM p; FROM logbook IMPORT log, begin_log, note;\n"
+        "BEGIN begin_log; note('a'); note('b'); WRITELN(log); ENDPROGRAM"
+    )
+    assert irlx.check(path) == []
+    run = irlx.run(path)
+    assert (run.output, (folder / "log.txt").read_text()) == ("ab", "  1 a\n  2 b\n\n")
+    (told,) = run.diagnostics
+    assert (told.code, Path(told.place.file).name, told.place.line_and_column) == (
+        "IRL549",
+        "logbook.irl",
+        (3, 1),
+    )
+
+
+@pytest.mark.req("LANG-13")
+def test_no_file_in_a_data_list(place, folder):
+    place("DATALIST points; FILE: log; ENDDATALIST", "points.dat")
+    place("PROGRAM p; IMPORT DATALIST points; BEGIN OPEN(log, 'a', 'WRITE'); CLOSE(log); ENDPROGRAM")
+    assert [(d.code, d.data["what"]) for d in irlx.check("p.irl")] == [("IRL267", "part of a data list")]
 
 
 @pytest.mark.req("LANG-42")

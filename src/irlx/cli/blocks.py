@@ -47,7 +47,7 @@ def command(options: argparse.Namespace) -> int:
     execution = Execution(job)
     for block in execution.blocks(_print_written):
         print(block_text(block, units))
-    print_diagnostics(execution.warnings)
+    print_diagnostics(execution.left_open)
     return 0
 
 
