@@ -116,6 +116,8 @@ def command(options: argparse.Namespace) -> int:
     if options.write_data and not broken:
         # Behind the verification, which reads the lists as they were.
         print_diagnostics(execution.write_data())
+    if broken or options.explain_tick is not None:
+        text.end_line()
     _print_summary(run, outputs, reports, broken, options)
     return 1 if broken else 0
 
