@@ -195,6 +195,8 @@ def test_eof_in_conditions(run):
     assert run(body, typed="7 8 9")[0] == "28"
     assert run(body.replace("j);", "j);", 1), typed="7\n")[0] == "17"
     assert run("b := EOF() OR FALSE; WRITE(b);")[0] == "TRUE"
+    assert run("WHILE NOT EOF DO READ(j); ENDWHILE; WRITE(j, EOF);", typed="4 5")[0] == "5TRUE"
+    assert run("eof := TRUE; WRITE(eof);", DECLARATIONS + "VAR BOOL: eof;")[0] == "TRUE"
 
 
 @pytest.mark.req("LANG-10")

@@ -22,6 +22,7 @@ from irlx.interpreter.scope import Routine, Scope
 from irlx.interpreter.types import BOOL, INT, ORIENTATION, REAL, STRING, Array, Record, Type
 from irlx.interpreter.values import Value, has_arrays
 from irlx.language import tree
+from irlx.language.builtins import BARE_FUNCTIONS
 
 _LITERALS = (tree.IntLiteral, tree.RealLiteral, tree.BoolLiteral, tree.StringLiteral)
 
@@ -119,7 +120,9 @@ class Expressions:
         if isinstance(node, tree.Designator):
             signal = self.designators.signal(node.base)
             reads = signal is not None and signal.is_input
-            return reads or node.base.key in ACTUAL or self.is_routine(node)
+            key = node.base.key
+            bare = key in BARE_FUNCTIONS and self.scope.found(key) is None
+            return reads or bare or key in ACTUAL or self.is_routine(node)
         asks = isinstance(node, tree.FunctionCall) and (node.name.key in ASKING or node.name.key == "eof")
         return asks or self.is_routine(node)
 
@@ -161,7 +164,9 @@ class Expressions:
         if signal is not None and signal.is_input and not node.selectors:
             return self._asking.input(node, signal)
         found = self.scope.found(key)
-        if not node.selectors and (isinstance(found, Routine) or (found is None and key in FUNCTIONS)):
+        if not node.selectors and (
+            isinstance(found, Routine) or (found is None and (key in FUNCTIONS or key in BARE_FUNCTIONS))
+        ):
             return self._call(node.base, (), node)
         return self.designators.read(node)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 __all__ = [
+    "BARE_FUNCTIONS",
     "FUNCTIONS",
     "LAYOUT_BOUNDS",
     "MOVE_PARAMETERS",
@@ -38,6 +39,9 @@ FUNCTIONS = _table(
     " DISTANCE FK IK MANIPULABILITY CLEARANCE POSTURE EOF"
 )
 """Predefined functions and constructors, casefolded name to spelling."""
+
+BARE_FUNCTIONS = frozenset({"eof"})
+"""Predefined functions that may be called by their name alone, casefolded."""
 
 PROCEDURES = _table("OPEN CLOSE READ WRITE WRITELN")
 """Predefined procedures, casefolded name to spelling."""

@@ -67,6 +67,10 @@ class Context:
         """Type of an expression that must be of exactly one of several types."""
         raise NotImplementedError
 
+    def function_call(self, node: tree.FunctionCall) -> Typed:
+        """Type of a call."""
+        raise NotImplementedError
+
     def part(self, type: Type, node: tree.Designator) -> Type:
         """Type of the part of a value that the selectors of a designator lead to."""
         raise NotImplementedError
