@@ -20,6 +20,7 @@ from irlx.blocks import (
     AskPose,
     AskPosture,
     AskPostureOf,
+    AskStandstill,
     Block,
     InputBlock,
     PauseBlock,
@@ -33,6 +34,8 @@ from irlx.cell.named import robot_names
 from irlx.cell.schema import RobotSection
 from irlx.cell.setting import setting_of
 from irlx.diagnostics import IrlxError
+from irlx.interpreter.channels.channels import Channels
+from irlx.interpreter.channels.unanswered_files import UnansweredFiles
 from irlx.interpreter.interpret import MAX_STEPS, interpret
 from irlx.program import Program, cell_path, load
 from irlx.robot.description import RobotDescription
@@ -175,6 +178,11 @@ def _program_check(
     return Check("program", FAILED if findings else OK, detail="; ".join(findings) or unsaid)
 
 
+def _no_text() -> str:
+    """What a program read from files and STANDARD_IN: no stream tells."""
+    raise Unanswerable
+
+
 def _recorded(question: AskInput | AskInputChange, outline: Outline, done: int) -> tuple[float, ...]:
     """What the stream says of inputs, `done` of its blocks being behind: what was read, how long was waited.
 
@@ -196,9 +204,9 @@ def _pause(outline: Outline, done: int) -> float:
 
 def _replayed(program: Program, cell: Cell, outline: Outline, max_steps: int) -> Iterator[Block]:
     """Blocks of a program whose questions are answered by the stream: nothing moves."""
-    source = interpret(
-        program.tree, program.source, setting_of(cell), program.data_lists, program.modules, max_steps
-    )
+    channels = Channels(UnansweredFiles(_no_text), _no_text)
+    setting, parts = setting_of(cell), (program.data_lists, program.modules)
+    source = interpret(program.tree, program.source, setting, *parts, max_steps, channels)
     reply: tuple[float, ...] | None = None
     done = 0
     while True:
@@ -218,6 +226,8 @@ def _replayed(program: Program, cell: Cell, outline: Outline, max_steps: int) ->
             reply = _of_posture(item, cell, [record.block for record in outline.records[:done]])
         elif isinstance(item, AskPause):
             reply = (_pause(outline, done),)
+        elif isinstance(item, AskStandstill):
+            reply = ()
         elif isinstance(item, AskInput | AskInputChange):
             reply = _recorded(item, outline, done)
         else:

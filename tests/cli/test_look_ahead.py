@@ -7,7 +7,8 @@ import pytest
 
 import irlx
 from irlx.blocks import InputBlock, SignalBlock
-from irlx.pipeline import Execution, prepare
+from irlx.job import prepare
+from irlx.pipeline import Execution
 
 pytestmark = pytest.mark.req("LANG-54")
 

@@ -172,7 +172,8 @@ def test_what_the_one_who_answers_raises_comes_out(path):
 
 def test_blocks_and_the_interpreter_go_on_at_once(path):
     from irlx.blocks.text import block_text
-    from irlx.pipeline import Execution, prepare
+    from irlx.job import prepare
+    from irlx.pipeline import Execution
 
     first = next(Execution(prepare(path)).blocks())
     assert block_text(first, ["rad"] * 7) == "1 PAUSE line 4"

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import irlx
-from irlx.pipeline import Execution, prepare
+from irlx.job import prepare
+from irlx.pipeline import Execution
 
 pytestmark = [pytest.mark.req("LANG-11"), pytest.mark.req("LANG-40")]
 

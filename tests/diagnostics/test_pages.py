@@ -67,6 +67,14 @@ MESSAGES = {
     "IRL250": (8, 8, "'half' is a procedure, not a function"),
     "IRL251": (2, 13, "the constant 'lift' has no value"),
     "IRL252": (6, 10, "5 is chosen by an earlier label of this CASE"),
+    "IRL266": (
+        2,
+        16,
+        "STANDARD_OUT cannot be 'logg': there is no such variable; did you mean 'log'?",
+    ),
+    "IRL267": (3, 16, "a FILE cannot be a parameter by value"),
+    "IRL268": (4, 11, "the file 'log' is used but never opened"),
+    "IRL269": (4, 8, "the file 'log' is opened but never closed"),
     "IRL280": (
         4,
         11,

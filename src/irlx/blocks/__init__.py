@@ -27,6 +27,7 @@ from irlx.blocks.questions import (
     AskPose,
     AskPosture,
     AskPostureOf,
+    AskStandstill,
     MachineQuestion,
     Question,
 )
@@ -47,6 +48,7 @@ __all__ = [
     "AskPose",
     "AskPosture",
     "AskPostureOf",
+    "AskStandstill",
     "Blend",
     "Block",
     "CriterionBlock",

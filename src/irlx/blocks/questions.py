@@ -115,6 +115,13 @@ class AskPause:
     origin: Origin
 
 
+@dataclass(frozen=True)
+class AskStandstill:
+    """Has everything so far been carried out, the robot at rest? Answer: nothing at all, once it has."""
+
+    origin: Origin
+
+
 MachineQuestion = (
     AskPosture
     | AskPostureOf
@@ -128,5 +135,5 @@ MachineQuestion = (
 )
 """What robot and inputs answer."""
 
-Question = MachineQuestion | AskPause
+Question = MachineQuestion | AskPause | AskStandstill
 """What machine or operator answer."""

@@ -8,6 +8,7 @@ from functools import partial
 from irlx.diagnostics import SourceText
 from irlx.interpreter.asking import ACTUAL, ASKING, Asking
 from irlx.interpreter.calls import Calls
+from irlx.interpreter.channel_access import end_of_file
 from irlx.interpreter.code import Frame, Step
 from irlx.interpreter.compiled import Compiled, Run, constant, failing, first_failing, folded
 from irlx.interpreter.context import Context
@@ -30,6 +31,7 @@ from irlx.interpreter.scope import Routine, Scope
 from irlx.interpreter.types import BOOL, INT, ORIENTATION, REAL, STRING, Array, Record, Type
 from irlx.interpreter.values import Value, has_arrays
 from irlx.language import tree
+from irlx.language.builtins import BARE_FUNCTIONS
 from irlx.language.checking.operators import aggregate_type, values_in_parentheses
 
 _LITERALS = (tree.IntLiteral, tree.RealLiteral, tree.BoolLiteral, tree.StringLiteral)
@@ -130,8 +132,11 @@ class Expressions:
         if isinstance(node, tree.Designator):
             signal = self.designators.signal(node.base)
             reads = signal is not None and signal.is_input
-            return reads or node.base.key in ACTUAL or self.is_routine(node)
-        return self.is_routine(node) or (isinstance(node, tree.FunctionCall) and node.name.key in ASKING)
+            key = node.base.key
+            bare = key in BARE_FUNCTIONS and self.scope.found(key) is None
+            return reads or bare or key in ACTUAL or self.is_routine(node)
+        asks = isinstance(node, tree.FunctionCall) and (node.name.key in ASKING or node.name.key == "eof")
+        return asks or self.is_routine(node)
 
     def is_routine(self, node: tree.Node) -> bool:
         """Whether an expression is the call of a routine of the program."""
@@ -173,7 +178,9 @@ class Expressions:
         if signal is not None and signal.is_input and not node.selectors:
             return self._asking.input(node, signal)
         found = self.scope.found(key)
-        if not node.selectors and (isinstance(found, Routine) or (found is None and key in FUNCTIONS)):
+        if not node.selectors and (
+            isinstance(found, Routine) or (found is None and (key in FUNCTIONS or key in BARE_FUNCTIONS))
+        ):
             return self._call(node.base, (), node)
         return self.designators.read(node)
 
@@ -282,6 +289,8 @@ class Expressions:
             return self._calls.function(routine, arguments, node)
         if name.key in ASKING:
             return self._asking.call(name, arguments, node)
+        if name.key == "eof":
+            return end_of_file(self, arguments, node)
         function = FUNCTIONS.get(name.key)
         if function is not None:
             return self._built_in(function, arguments, node)

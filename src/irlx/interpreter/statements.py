@@ -8,6 +8,7 @@ from typing import Any
 from irlx.blocks import HaltBlock, SignalBlock
 from irlx.interpreter.calls import Calls
 from irlx.interpreter.cases import add_case
+from irlx.interpreter.channel_statements import add_channel_call
 from irlx.interpreter.code import Frame, Label, Step
 from irlx.interpreter.compiled import Run, failing
 from irlx.interpreter.context import Context
@@ -133,15 +134,17 @@ class Statements:
         routine = self.context.scope.found(node.name.key)
         source = self.context.source
         if not isinstance(routine, Routine):
-            built_in = node.name.key in PROCEDURES
-            what = f"the procedure {node.name.name}"
-            if built_in or routine is None:
-                raise fail("IRL590", source, node.span, what=what)
+            if routine is None and node.name.key in PROCEDURES:
+                add_channel_call(self, node)
+                return
+            if routine is None:
+                raise fail("IRL590", source, node.span, what=f"the procedure {node.name.name}")
             found = f"the variable {routine.name}"
             raise fail("IRL222", source, node.span, expected="a procedure", found=found)
         arguments = [a for a in node.arguments if not isinstance(a, tree.FormattedValue)]
         if len(arguments) != len(node.arguments):
-            raise fail("IRL590", source, node.span, what="a value with a width")
+            data = {"expected": "a value without a layout", "found": "one with :width"}
+            raise fail("IRL222", source, node.span, **data)
         wrong = Calls(self.expressions).call(routine, arguments, node)
         if wrong is not None:
             self.run(node, wrong.run)

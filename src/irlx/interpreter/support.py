@@ -27,14 +27,14 @@ EXECUTED_DECLARATIONS = (
     tree.ProcedureDeclaration,
     tree.FunctionDeclaration,
     tree.SignalDeclaration,
+    tree.StandardChannel,
 )
 _CLAUSES = (tree.WithLimit, tree.WithReconfiguration, tree.WithCriterion)
-_EXECUTED_FUNCTIONS = frozenset({*FUNCTIONS, *ASKING, *builtins.TYPES}) - LATER_TYPES
+_EXECUTED_FUNCTIONS = frozenset({*FUNCTIONS, *ASKING, "eof", *builtins.TYPES}) - LATER_TYPES
 _READ_ONLY_FUNCTIONS = frozenset(builtins.FUNCTIONS) - _EXECUTED_FUNCTIONS
 
 _NAMES: dict[type[tree.Node], str] = {
     tree.RobotBinding: "ROBOT",
-    tree.StandardChannel: "STANDARD_IN and STANDARD_OUT",
     tree.ObstacleStart: "OBSTACLE",
     tree.ObstacleEnd: "OBSTACLEEND",
     tree.WithTolerance: "WITH TOLERANCE",
@@ -117,8 +117,6 @@ def _parts(root: tree.Node, declared: frozenset[str]) -> Iterator[tuple[tree.Nod
                 missing = missing_in_move(node)
                 if missing is not None:
                     yield missing
-            case tree.Call(name=name) if name.key in builtins.PROCEDURES and name.key not in declared:
-                yield node, f"the procedure {name.name}"
             case tree.FunctionCall(name=name, arguments=arguments) if name.key not in declared:
                 if name.key in _READ_ONLY_FUNCTIONS:
                     yield node, f"the function {name.name}"

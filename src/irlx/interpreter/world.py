@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TypeAlias
 
+from irlx.interpreter.channels.channels import Channels
 from irlx.interpreter.list_text import Rewritten, rewritten
 from irlx.interpreter.machine import Machine
 from irlx.interpreter.quaternion import IDENTITY
@@ -32,9 +33,10 @@ ListValues: TypeAlias = "Callable[[ImportedList, Scope, World], dict[str, Variab
 class World:
     """Exists once a run; `modules` are the scopes of those that are declared, by casefolded name."""
 
-    def __init__(self, setting: Setting, machine: Machine) -> None:
+    def __init__(self, setting: Setting, machine: Machine, channels: Channels | None = None) -> None:
         self.setting = setting
         self.machine = machine
+        self.channels = channels or Channels()
         self.modules: dict[str, Scope] = {}
         self._lists: dict[str, dict[str, Variable]] = {}
         self._first: dict[str, dict[str, Value]] = {}

@@ -1,4 +1,4 @@
-"""IRL281 to IRL299 and IRL310 to IRL329: what is allowed and seldom meant, told by checks."""
+"""IRL268, IRL269, IRL281 to IRL299 and IRL310 to IRL329: what is allowed and seldom meant, told by checks."""
 
 from irlx.diagnostics.codes.code import Code, info, warning
 
@@ -32,6 +32,12 @@ LINTS: tuple[Code, ...] = (
         "{output} is set while the robot passes the corner, not once it has stopped there",
         "leave out {param} of the move before it, if it shall stop",
     ),
+    warning(
+        "IRL268",
+        "the file '{name}' is used but never opened",
+        "OPEN({name}, 'name', 'READ'); comes first, or 'WRITE' or 'APPEND'",
+    ),
+    warning("IRL269", "the file '{name}' is opened but never closed", "write CLOSE({name});"),
     warning("IRL310", "the lower bound {low} of joint {joint} is above its upper bound {high}"),
     warning(
         "IRL311",

@@ -34,6 +34,10 @@ class Facts:
     """What lints need to know of a program, gathered on the way: values at limits and targets of moves."""
 
     limits: list[tuple[tree.LimitSwitch | tree.WithLimit, Settled, Settled]] = field(default_factory=list)
+    files: list[tuple[str, Entry, tree.Name]] = field(default_factory=list)
+    """What is done with variables of type FILE: a word such as OPEN, the variable, its name there."""
+    standard: set[str] = field(default_factory=set)
+    """Directions of the standard channels that are used, IN or OUT."""
     targets: dict[int, tuple[Type, Settled]] = field(default_factory=dict)
     """Types and values of the targets of the main MOVEs, by the identity of their nodes."""
 
@@ -61,6 +65,10 @@ class Context:
 
     def one_of(self, node: tree.Expression, candidates: tuple[Type, ...]) -> Typed:
         """Type of an expression that must be of exactly one of several types."""
+        raise NotImplementedError
+
+    def function_call(self, node: tree.FunctionCall) -> Typed:
+        """Type of a call."""
         raise NotImplementedError
 
     def part(self, type: Type, node: tree.Designator) -> Type:

@@ -10,6 +10,7 @@ from irlx.language.checking import TypedText
 from irlx.language.lints.blends import lost_blends
 from irlx.language.lints.bounds import crossed_bounds
 from irlx.language.lints.closed_path import open_cycles
+from irlx.language.lints.files import open_files
 from irlx.language.lints.flow import flow_lints
 from irlx.language.lints.unused import unused_names
 
@@ -35,6 +36,7 @@ def lints_of(
         return []
     found = [*typed.lints, *flow_lints(root, source), *crossed_bounds(typed.facts, source)]
     found += lost_blends(root, source)
+    found += open_files(root, typed, source)
     if isinstance(root, tree.Program):
         found += unused_names(typed, source)
         found += open_cycles(root, typed.facts, source)

@@ -17,6 +17,7 @@ from irlx.language.types.model import (
     Simple,
     Type,
     fits,
+    holds_files,
     is_number,
     same_type,
 )
@@ -61,6 +62,7 @@ __all__ = [
     "built_in_functions",
     "field_names",
     "fits",
+    "holds_files",
     "is_number",
     "joint_bounds",
     "joint_record",

@@ -65,7 +65,7 @@ _FURTHER: dict[str, Type] = {
 def predefined_types(joints: int) -> dict[str, Type]:
     """Types that a running program knows, by casefolded name, for a robot of this number of joints."""
     types = _SIMPLE | {key: joint_record(key, joints) for key in JOINT_RECORDS}
-    return types | {"char": CHAR, "character": CHAR} | _postures(types["main_joint"], joints)
+    return types | {"char": CHAR, "character": CHAR, "file": FILE} | _postures(types["main_joint"], joints)
 
 
 def known_types(joints: int | None) -> dict[str, Type]:
