@@ -232,12 +232,12 @@ def test_a_reader_that_goes_away(folder, environment):
 
 WATCH = """from pathlib import Path
 from irlx.pacing.pacer import Pacer
-execute = Pacer.execute
-def watched(pacer, block):
-    if block.id == 2:
+carry_out = Pacer.carry_out
+def watched(pacer, group):
+    if group[0].id == 2:
         Path("second").touch()
-    return execute(pacer, block)
-Pacer.execute = watched
+    return carry_out(pacer, group)
+Pacer.carry_out = watched
 """
 """A plugin that tells when the second block begins."""
 

@@ -11,7 +11,7 @@ import pytest
 import irlx
 from irlx.diagnostics import CATALOGUE
 
-BAD = "PROGRAM b;\nBEGIN\n  x := 1;\n  OUT_3 := TRUE;\n  MOVE_INC LIN POSITION(1, 2, 3);\nENDPROGRAM\n"
+BAD = "PROGRAM b;\nBEGIN\n  x := 1;\n  OUT_3 := TRUE;\n  OBSTACLE wall;\nENDPROGRAM\n"
 
 
 @pytest.mark.req("LANG-75")
