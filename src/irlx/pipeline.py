@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf
 from pathlib import Path, PurePath
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx._version import __version__
-from irlx.blocks import Block, Origin, Question
+from irlx.blocks import AskPause, Block, Origin, Question
 from irlx.cell.cell import Cell
 from irlx.cell.errors import CellError
 from irlx.cell.find import is_file
@@ -23,11 +23,14 @@ from irlx.cell.setting import setting_of
 from irlx.diagnostics import Diagnostic, IrlxError, Place, Span, report
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.interpreter.interpret import MAX_STEPS, Interpretation
+from irlx.pacing.executed import Executed
 from irlx.pacing.explanation import TickExplanation
 from irlx.pacing.explanation import explain_tick as explain_row
 from irlx.pacing.inputs import InputFunction, Inputs
+from irlx.pacing.lookahead import Lookahead
+from irlx.pacing.notes import Notes
 from irlx.pacing.pacer import Pacer
-from irlx.pacing.rows import MotionRows
+from irlx.pacing.pauses import PauseAborted, PauseFunction, Pauses, is_time
 from irlx.pacing.situation import PacingSetup
 from irlx.program import Program, ProgramError, cell_path, load
 from irlx.promises import CONDITION, LONGEST_TICK, SHORTEST_TICK
@@ -57,7 +60,7 @@ class Job:
     """A program and the cell it runs in, checked against each other; tick in ns.
 
     A move may take `max_slow` times as long as programmed, the program may execute `max_steps` statements;
-    `inputs` are the cell's with those of the caller.
+    `inputs` are the cell's with those of the caller, `pauses` say how long each PAUSE lasts.
     """
 
     program: Program
@@ -66,6 +69,7 @@ class Job:
     max_slow: float = inf
     max_steps: int = MAX_STEPS
     inputs: Inputs = field(default_factory=Inputs)
+    pauses: Pauses = field(default_factory=Pauses)
 
 
 def prepare(
@@ -75,6 +79,8 @@ def prepare(
     max_slow: float | None = None,
     max_steps: int | None = None,
     inputs: InputsGiven = None,
+    pause_s: float = 0.0,
+    on_pause: PauseFunction | None = None,
 ) -> Job:
     """Load what a run needs.
 
@@ -92,12 +98,16 @@ def prepare(
     steps = MAX_STEPS if max_steps is None else max_steps
     if steps < 1:
         raise IrlxError(report("IRL006", option="--max-steps", value=f"{steps}", cause="at least 1"))
+    if not is_time(pause_s):
+        cause = "a pause lasts a number of seconds, 0 or more"
+        raise IrlxError(report("IRL006", option="--pause", value=f"{pause_s:g}", cause=cause))
+    pauses = Pauses(pause_s, on_pause)
     if tick_ms is None:
-        return Job(program, loaded, loaded.tick_ns, slowest, steps, said)
+        return Job(program, loaded, loaded.tick_ns, slowest, steps, said, pauses)
     if not LEAST_TICK_MS <= tick_ms <= LONGEST_TICK_MS:
         cause = f"a tick lasts {LEAST_TICK_MS:g} to {LONGEST_TICK_MS:g} ms"
         raise IrlxError(report("IRL006", option="--tick", value=f"{tick_ms:g}", cause=cause))
-    return Job(program, loaded, round(tick_ms * 1e6), slowest, steps, said)
+    return Job(program, loaded, round(tick_ms * 1e6), slowest, steps, said, pauses)
 
 
 def inputs_of(cell: Cell, given: InputsGiven) -> Inputs:
@@ -127,15 +137,6 @@ def _loaded(path: PathLike, cell: PathLike | None) -> Program:
         raise
 
 
-@dataclass(frozen=True)
-class Executed:
-    """A block, the tick whose row stood when it began, and the rows it became (None for none)."""
-
-    block: Block
-    tick: int
-    rows: MotionRows | None
-
-
 class Execution:
     """One run in progress: a program's blocks, and the pacer that executes them."""
 
@@ -154,16 +155,16 @@ class Execution:
 
     def __iter__(self) -> Iterator[Executed]:
         """Execute the program block by block. Raises IrlxError where it cannot go on (IRL090: by a fault)."""
-        source = self._blocks(self._pacer.answer)
+        source = self._carried_out()
         while True:
             try:
-                block = next(source)
-                tick, settled = self._pacer.tick, self._pacer.settled(block)
-                executed = Executed(settled, tick, self._pacer.execute(settled))
+                executed = next(source)
             except StopIteration:
                 return
             except IrlxError:
                 raise
+            except PauseAborted as aborted:
+                raise aborted.error from None
             except Exception as error:
                 if os.environ.get("IRLX_DEBUG"):
                     raise
@@ -171,37 +172,72 @@ class Execution:
                 raise IrlxError(report("IRL090", cause=f"{type(error).__name__}: {error}")) from error
             yield executed
 
+    def _carried_out(self) -> Iterator[Executed]:
+        """What becomes of the blocks; the program runs ahead of them while its moves pass their targets."""
+        ahead = Lookahead(self._locate, self._pacer.notes)
+        source, reply = self._interpreted(), None
+        while True:
+            try:
+                item = source.send(reply)
+            except StopIteration:
+                yield from self._all(ahead.stop(None, "the program ends"))
+                return
+            except IrlxError:
+                yield from self._all(ahead.stop(None, "the program cannot go on"))
+                raise
+            reply = None
+            if isinstance(item, Question):
+                yield from self._all(ahead.before(item))
+                reply = self._answer(item)
+            else:
+                yield from self._all(ahead.take(item))
+
+    def _all(self, groups: Sequence[tuple[Block, ...]]) -> Iterator[Executed]:
+        for group in groups:
+            yield from self._pacer.carry_out(group)
+
     def blocks(self) -> Iterator[Block]:
         """Blocks of the program; nothing moves until it asks for the posture that its moves lead to."""
         waiting: list[Block] = []
-
-        def answer(question: Question) -> tuple[float, ...]:
-            for block in waiting:
-                self._pacer.execute(self._pacer.settled(block))
-            waiting.clear()
-            return self._pacer.answer(question)
-
-        for block in self._blocks(answer):
-            yield block
-            waiting.append(block)
-
-    def _blocks(self, answer: Callable[[Question], tuple[float, ...]]) -> Iterator[Block]:
-        """Blocks as the interpreter yields them, its questions answered on the way."""
-        job, program = self.job, self.job.program
-        setting = setting_of(job.cell)
-        ready = Interpretation(
-            program.tree, program.source, setting, program.data_lists, program.modules, job.max_steps
-        )
-        self._interpretation, source = ready, ready.run()
-        reply = None
+        source, reply = self._interpreted(), None
         while True:
             try:
                 item = source.send(reply)
             except StopIteration:
                 return
-            reply = answer(item) if isinstance(item, Question) else None
-            if isinstance(item, Block):
+            reply = None
+            if isinstance(item, AskPause):
+                reply = self._answer(item)
+            elif isinstance(item, Question):
+                self._move_to_the_end_of(waiting)
+                waiting.clear()
+                reply = self._answer(item)
+            else:
                 yield item
+                waiting.append(item)
+
+    def _answer(self, question: Question) -> tuple[float, ...]:
+        """What the operator says to a pause, the machine to all else."""
+        if isinstance(question, AskPause):
+            return self.job.pauses.answer(question, self._locate)
+        return self._pacer.answer(question)
+
+    def _move_to_the_end_of(self, blocks: Sequence[Block]) -> None:
+        """Carry out blocks for their effect on where the robot stands."""
+        ahead = Lookahead(self._locate, Notes([]))
+        groups = [group for block in blocks for group in ahead.take(block)]
+        for _ in self._all([*groups, *ahead.stop(None, "")]):
+            pass
+
+    def _interpreted(self) -> Generator[Block | Question, tuple[float, ...] | None, None]:
+        """The program under way: its blocks and questions."""
+        job, program = self.job, self.job.program
+        setting = setting_of(job.cell)
+        ready = Interpretation(
+            program.tree, program.source, setting, program.data_lists, program.modules, job.max_steps
+        )
+        self._interpretation = ready
+        return ready.run()
 
     def write_data(self) -> list[Diagnostic]:
         """Write values that the program changed back to its data lists, each file whole or not at all.
@@ -222,15 +258,15 @@ class Execution:
                     file.write(new.text.encode("utf-8"))
         return warnings
 
-    def explain(self, executed: Executed, start: Array, tick: int) -> TickExplanation | None:
-        """Explanation of a tick, None where it is no row of this block; `start` (n,) the row before it."""
+    def explain(self, executed: Executed, before: Array, tick: int) -> TickExplanation | None:
+        """Explanation of a tick, None where it is no row of this block; `before` (2, n): the rows before."""
         rows = executed.rows
         if rows is None or not rows.first_tick <= tick < rows.first_tick + len(rows):
             return None
         cell = self.job.cell
         limits, setup = rows.limits or cell.limits, self._pacer.setup
         dt = self.job.tick_ns / 1e9
-        return explain_row(rows, start, tick, limits, setup.weights, setup.kinematics, dt)
+        return explain_row(rows, before, tick, limits, setup.weights, setup.kinematics, dt)
 
     def recording(self) -> Recording:
         """A recording that begins at the cell's start posture."""
@@ -240,7 +276,8 @@ class Execution:
     @property
     def warnings(self) -> list[Diagnostic]:
         """Warnings of the blocks executed so far."""
-        return self._pacer.warnings
+        own = self._interpretation.warnings if self._interpretation is not None else []
+        return [*own, *self._pacer.warnings]
 
     def _locate(self, origin: Origin) -> Place:
         text = self._texts.get(origin.file, self.job.program.source)
@@ -308,18 +345,20 @@ def run(
     max_steps: int | None = None,
     inputs: InputsGiven = None,
     write_data: bool = False,
+    pause_s: float = 0.0,
 ) -> Run:
     """Interpret a program, move its robot, and return the joint stream.
 
     `cell`: path of the cell file, by default found beside the program; `tick_ms` overrides the
     cell's tick; `explain_tick` asks for `Run.explanation` of that tick; a move that limits make
     more than `max_slow` times as long as programmed is an error, and so are more than `max_steps`
-    statements (by default 10,000,000); `inputs` as `InputsGiven`, in place of the cell's. With `write_data`,
-    values of data lists that the program has changed are written to their files after a complete run.
+    statements (by default 10,000,000); `inputs` as `InputsGiven`, in place of the cell's; each PAUSE lasts
+    `pause_s` s, rounded up to whole ticks. With `write_data`, values of data
+    lists that the program has changed are written to their files after a complete run.
     Raises ProgramError and CellError before anything moves, RunError (with what was executed until then)
     once it does, RunInterrupted on Ctrl-C.
     """
-    job = prepare(program, cell, tick_ms, max_slow, max_steps, inputs)
+    job = prepare(program, cell, tick_ms, max_slow, max_steps, inputs, pause_s)
     execution = Execution(job)
     finished = execute(execution, progress, explain_tick)
     if not write_data:
@@ -335,8 +374,8 @@ def execute(execution: Execution, progress: Progress | None = None, explain_tick
     try:
         for executed in execution:
             if explain_tick is not None and explanation is None:
-                explanation = execution.explain(executed, recording.last_posture, explain_tick)
-            recording.add(executed.block, executed.tick, executed.rows)
+                explanation = execution.explain(executed, recording.last_postures, explain_tick)
+            recording.add(executed)
             if progress is not None:
                 progress(executed.block, recording.duration)
     except IrlxError as error:
@@ -361,13 +400,17 @@ def stream(
     max_slow: float | None = None,
     max_steps: int | None = None,
     inputs: InputsGiven = None,
+    pause_s: float = 0.0,
+    on_pause: PauseFunction | None = None,
 ) -> Iterator[Sample]:
     """Samples of a run, one after another, motion by motion as they are asked for.
 
-    The same samples as `run` gives. Iteration may stop at any sample. What cannot be prepared raises
+    The same samples as `run` gives. Iteration may stop at any sample. At each PAUSE, all samples before it
+    handed out, `on_pause` is called with its place; the program goes on when it returns, after the time, s,
+    that it returns, or `pause_s` for None; what it raises comes out here. What cannot be prepared raises
     here, what goes wrong in motion at the sample it keeps from coming, as IrlxError.
     """
-    return _samples(prepare(program, cell, tick_ms, max_slow, max_steps, inputs))
+    return _samples(prepare(program, cell, tick_ms, max_slow, max_steps, inputs, pause_s, on_pause))
 
 
 def _samples(job: Job) -> Iterator[Sample]:
@@ -375,5 +418,5 @@ def _samples(job: Job) -> Iterator[Sample]:
     recording = execution.recording()
     yield from recording.take_samples()
     for executed in execution:
-        recording.add(executed.block, executed.tick, executed.rows)
+        recording.add(executed)
         yield from recording.take_samples()

@@ -16,11 +16,13 @@ from irlx.blocks import (
     AskLastMove,
     AskManipulability,
     AskNearestPosture,
+    AskPause,
     AskPose,
     AskPosture,
     AskPostureOf,
     Block,
     InputBlock,
+    PauseBlock,
     ToolBlock,
     WaitBlock,
 )
@@ -186,6 +188,12 @@ def _recorded(question: AskInput | AskInputChange, outline: Outline, done: int) 
     raise Unanswerable
 
 
+def _pause(outline: Outline, done: int) -> float:
+    """Time that the stream says a PAUSE took; 0 where its next block is none, which differs anyway."""
+    block = outline.records[done].block if done < len(outline.records) else None
+    return block.duration if isinstance(block, PauseBlock) else 0.0
+
+
 def _replayed(program: Program, cell: Cell, outline: Outline, max_steps: int) -> Iterator[Block]:
     """Blocks of a program whose questions are answered by the stream: nothing moves."""
     source = interpret(
@@ -208,6 +216,8 @@ def _replayed(program: Program, cell: Cell, outline: Outline, max_steps: int) ->
             reply = outline.posture(row)
         elif isinstance(item, AskPose | AskManipulability):
             reply = _of_posture(item, cell, [record.block for record in outline.records[:done]])
+        elif isinstance(item, AskPause):
+            reply = (_pause(outline, done),)
         elif isinstance(item, AskInput | AskInputChange):
             reply = _recorded(item, outline, done)
         else:

@@ -87,6 +87,8 @@ MESSAGES = {
         3,
         "the path that begins here at (600, 0, 400) does not come back: it ends at (500, 0, 400)",
     ),
+    "IRL312": (2, 75, "STATUS 5 of a ROBTARGET is carried and not compared: it chooses no posture"),
+    "IRL313": (5, 12, "a ROBTARGET does not fix the posture of a robot with 7 joints"),
     "IRL301": (4, 3, "CYCLICSTART is still on at the end of the program"),
     "IRL302": (5, 3, "FREEZEEND although FREEZESTART is not on"),
     "IRL303": (5, 3, "FREEZESTART is switched on while it is on; the new values replace the old"),

@@ -103,6 +103,7 @@ SILENT = [
 ]
 
 
+@pytest.mark.req("LANG-64")
 @pytest.mark.parametrize(("declarations", "body", "marked"), SILENT)
 def test_warned_about_as_well(declarations, body, marked):
     assert marked in [text for _, _, text in warnings_of(program(declarations, body))]

@@ -115,7 +115,7 @@ def test_the_reference_runs_smoothly_and_never_beyond_its_postures():
     for _ in range(30):
         start, via, end = rng.normal(size=(3, 7))
         at = rng.uniform(0.02, 0.98)
-        reference = Asked(end, (at, via)).reference(start)
+        reference = Asked(end, ((at, via),)).reference(start)
         for share, posture in ((0.0, start), (at, via), (1.0, end)):
             np.testing.assert_allclose(reference(share), posture, atol=1e-14)
         for low, high, one, other in ((0.0, at, start, via), (at, 1.0, via, end)):

@@ -7,6 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from irlx.blocks import JointTarget, MotionLaw, MoveBlock, MoveKind, Origin
+from irlx.pacing.executed import Executed
 from irlx.pacing.rows import MotionRows
 from irlx.report.recording import Recording
 from irlx.robot.limits import JointLimits
@@ -63,7 +64,7 @@ def recorded() -> tuple[Recording, list[MotionRows]]:
 def test_rows_start_at_tick_0_and_carry_their_block() -> None:
     recording, motions = recorded()
     for rows in motions:
-        recording.add(rows.block, rows.first_tick - 1, rows)
+        recording.add(Executed(rows.block, rows.first_tick - 1, rows))
     run = recording.finish(True, ())
     np.testing.assert_array_equal(run.q, np.vstack([START, motions[0].q, motions[1].q]))
     assert run.block.tolist() == [0] + [1] * 11 + [2] * 5
@@ -80,7 +81,7 @@ def test_rows_start_at_tick_0_and_carry_their_block() -> None:
 def test_rates_are_backward_differences_from_rest() -> None:
     recording, motions = recorded()
     for rows in motions:
-        recording.add(rows.block, rows.first_tick - 1, rows)
+        recording.add(Executed(rows.block, rows.first_tick - 1, rows))
     run = recording.finish(True, ())
     before = START
     speed_before = np.zeros(2)
@@ -95,7 +96,7 @@ def test_rates_are_backward_differences_from_rest() -> None:
 def test_quaternions_are_unit_and_do_not_change_sign() -> None:
     recording, motions = recorded()
     for rows in motions:
-        recording.add(rows.block, rows.first_tick - 1, rows)
+        recording.add(Executed(rows.block, rows.first_tick - 1, rows))
     quaternions = recording.finish(True, ()).tool[:, 3:]
     np.testing.assert_allclose(np.linalg.norm(quaternions, axis=1), 1.0, atol=1e-15)
     assert np.all(np.sum(quaternions[1:] * quaternions[:-1], axis=1) > 0.0)
@@ -111,8 +112,8 @@ def test_samples_taken_motion_by_motion_are_those_of_the_run() -> None:
     samples = list(lazy.take_samples())
     assert len(samples) == 1
     for rows in motions:
-        whole.add(rows.block, rows.first_tick - 1, rows)
-        lazy.add(rows.block, rows.first_tick - 1, rows)
+        whole.add(Executed(rows.block, rows.first_tick - 1, rows))
+        lazy.add(Executed(rows.block, rows.first_tick - 1, rows))
         samples += lazy.take_samples()
     assert list(lazy.take_samples()) == []
     run = whole.finish(True, ())

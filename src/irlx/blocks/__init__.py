@@ -23,9 +23,11 @@ from irlx.blocks.questions import (
     AskLastMove,
     AskManipulability,
     AskNearestPosture,
+    AskPause,
     AskPose,
     AskPosture,
     AskPostureOf,
+    MachineQuestion,
     Question,
 )
 from irlx.blocks.reconfigure import ReconfigureBlock
@@ -41,6 +43,7 @@ __all__ = [
     "AskLastMove",
     "AskManipulability",
     "AskNearestPosture",
+    "AskPause",
     "AskPose",
     "AskPosture",
     "AskPostureOf",
@@ -60,6 +63,7 @@ __all__ = [
     "LimitClause",
     "LimitKind",
     "LimitSwitchBlock",
+    "MachineQuestion",
     "MotionLaw",
     "MoveBlock",
     "MoveKind",

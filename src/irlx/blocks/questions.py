@@ -108,7 +108,14 @@ class AskInputChange:
     inputs: tuple[tuple[str, ...], ...]
 
 
-Question = (
+@dataclass(frozen=True)
+class AskPause:
+    """How long does this PAUSE last, all blocks so far executed? Answer: one number, s, 0 or more."""
+
+    origin: Origin
+
+
+MachineQuestion = (
     AskPosture
     | AskPostureOf
     | AskNearestPosture
@@ -119,3 +126,7 @@ Question = (
     | AskInput
     | AskInputChange
 )
+"""What robot and inputs answer."""
+
+Question = MachineQuestion | AskPause
+"""What machine or operator answer."""

@@ -54,7 +54,7 @@ def _(block: HaltBlock, joint_units: Sequence[str]) -> str:
 
 @_words.register
 def _(block: PauseBlock, joint_units: Sequence[str]) -> str:
-    return "PAUSE"
+    return f"PAUSE {number(block.duration)} s" if block.duration else "PAUSE"
 
 
 @_words.register

@@ -52,6 +52,13 @@ def add_parser(commands: Any) -> None:
         metavar="F",
         help="end with IRL525 where limits make a move more than F times as long as programmed",
     )
+    parser.add_argument(
+        "--pause",
+        type=float,
+        default=0.0,
+        metavar="SEC",
+        help="stand for SEC s, rounded up to whole ticks, at each PAUSE (default: go on at once)",
+    )
     add_execution_options(parser)
     parser.add_argument(
         "--explain-tick",
@@ -128,7 +135,7 @@ def _prepared(options: argparse.Namespace) -> tuple[Job, list[Path]]:
         from irlx.pipeline import prepare
 
         asked = options.tick, options.max_slow, options.max_steps, options.inputs
-        job = prepare(program, options.cell, *asked)
+        job = prepare(program, options.cell, *asked, pause_s=options.pause)
         read = [*(found.path for found in program.data_lists), *(found.path for found in program.modules)]
         inputs = (program.path, Path(job.cell.file), *read)
         inputs += () if options.inputs is None else (Path(options.inputs),)

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
-from irlx.diagnostics import SourceText
+from irlx.diagnostics import Diagnostic, SourceText
 from irlx.interpreter.code import Code, Step
 from irlx.interpreter.declare import Unit
 from irlx.interpreter.list_text import Rewritten
@@ -81,6 +81,11 @@ class Interpretation:
         self._code.steps.append(end)
         self._code.spans.append(self._code.spans[-1])
         return self._machine.run(self._code)
+
+    @property
+    def warnings(self) -> list[Diagnostic]:
+        """What the program did so far that deserves a look."""
+        return self._machine.warnings
 
     def rewritten(self, found: ImportedList) -> Rewritten:
         """Text of an imported data list with the values that its variables have now."""

@@ -149,10 +149,21 @@ class Moves(MotionParts):
             data = {"targets": points, "postures": found}
             raise fail("IRL405", self._context.source, clause.span, **data)
 
+    def _warn_of_status(self, node: tree.Move, values: Sequence[Any]) -> None:
+        """A STATUS is carried, and counts for nothing."""
+        robtarget = self._type("robtarget")
+        for target, value in zip(node.targets, values, strict=True):
+            for item in _opened([value]):
+                status = item.values[1] if item.type == robtarget else 0
+                if isinstance(status, int) and status != 0:
+                    machine, source = self._context.machine, self._context.source
+                    machine.warn_once("IRL312", source, target.span, status=status)
+
     # ---- moves
 
     def _stops(self, node: tree.Move, at: dict[str, list[Any]], base: Base) -> Iterator[Stop]:
         """The moves of a statement by the values of its parts."""
+        self._warn_of_status(node, at["targets"])
         turned = increment_of if node.incremental else target_of
         setting = self._context.setting
         targets = [turned(value, base, setting) for value in _opened(at["targets"])]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from irlx.blocks import HaltBlock, PauseBlock, SignalBlock
+from irlx.blocks import HaltBlock, SignalBlock
 from irlx.interpreter.calls import Calls
 from irlx.interpreter.cases import add_case
 from irlx.interpreter.code import Frame, Label, Step
@@ -21,7 +21,7 @@ from irlx.interpreter.scope import Followed, Routine, Signal
 from irlx.interpreter.support import part_name
 from irlx.interpreter.targets import origin_of
 from irlx.interpreter.types import BOOL, Type
-from irlx.interpreter.waits import add_wait, add_wait_for
+from irlx.interpreter.waits import add_pause, add_wait, add_wait_for
 from irlx.language import tree
 from irlx.language.builtins import PROCEDURES
 
@@ -231,19 +231,13 @@ class Statements:
     # ---- rest
 
     def _halt(self, node: tree.Halt) -> None:
-        self._emit(node, HaltBlock)
-        self.assembler.add(node, lambda _: lambda _: END)
-
-    def _pause(self, node: tree.Pause) -> None:
-        self._emit(node, PauseBlock)
-
-    def _emit(self, node: tree.Node, kind: type[HaltBlock | PauseBlock]) -> None:
         machine, origin = self.context.machine, origin_of(self.context.source, node)
 
         def make(following: int) -> Step:
-            return lambda _: machine.emit((kind(id=machine.next_id(), origin=origin),), following)
+            return lambda _: machine.emit((HaltBlock(id=machine.next_id(), origin=origin),), following)
 
         self.assembler.add(node, make)
+        self.assembler.add(node, lambda _: lambda _: END)
 
 
 def _no_value(_: Frame) -> None:
@@ -263,7 +257,7 @@ _ADDERS: dict[type[tree.Node], Any] = {
     tree.While: Statements._while,
     tree.Repeat: Statements._repeat,
     tree.Halt: Statements._halt,
-    tree.Pause: Statements._pause,
+    tree.Pause: add_pause,
     tree.WaitTime: add_wait,
     tree.WaitFor: add_wait_for,
 }

@@ -5,6 +5,7 @@ from __future__ import annotations
 __all__ = [
     "FUNCTIONS",
     "MOVE_PARAMETERS",
+    "PORT_NAME",
     "PROCEDURES",
     "SYSTEM_VARIABLES",
     "TYPES",
@@ -52,9 +53,10 @@ SYSTEM_VARIABLES = _table(
 )
 """System variables and defaults of the motion parameters, casefolded name to spelling."""
 
-_PORT = re.compile(r"a?(in|out)_[0-9]+")
+PORT_NAME = re.compile(r"a?(?:in|out)_[0-9]+")
+"""Casefolded names of ports."""
 
 
 def is_port_name(key: str) -> bool:
     """Whether a casefolded name is that of a port, such as ``out_3``, usable without a declaration."""
-    return _PORT.fullmatch(key) is not None
+    return PORT_NAME.fullmatch(key) is not None

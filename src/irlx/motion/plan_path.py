@@ -1,21 +1,25 @@
-"""Pre-interpolator of LIN and CIRCLE: path and programmed time of one move from stop to stop."""
+"""Pre-interpolator of one LIN or CIRCLE: path and programmed time from stop to stop."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import degrees, inf, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.blocks import MotionLaw, MoveBlock, MoveKind
+from irlx.blocks import MotionLaw, MoveBlock, MoveKind, Profile
 from irlx.diagnostics import Place, report
 from irlx.motion.errors import MotionError
+from irlx.motion.fastest_law import fastest_s_curves
 from irlx.motion.line import Line
 from irlx.motion.plan_circle import circle_path
 from irlx.motion.pose_path import PosePath
+from irlx.motion.sections import Sections, rise_time
 from irlx.motion.swept_path import SweptPath
 from irlx.motion.target_pose import target_pose
+from irlx.motion.time_law import TimeLaw
 from irlx.motion.trapezoid import Trapezoid
 from irlx.motion.whole_ticks import ticks_of_move
 
@@ -35,9 +39,9 @@ class PlannedPath:
     """
 
     path: PosePath
-    law: Trapezoid
+    law: TimeLaw
     ticks: int
-    programmed: Trapezoid
+    programmed: TimeLaw
 
 
 def plan_path(
@@ -54,11 +58,20 @@ def plan_path(
     with np.errstate(over="ignore"):
         nothing = path.is_nothing
     if nothing:
-        still = Trapezoid(0.0, 0.0, 0.0, 0.0)
-        return PlannedPath(path, still, 0, still)
+        return standing(path)
     if not path.axis_is_defined:
         raise MotionError(report("IRL422", place, angle=f"{degrees(path.widest_turn):.6g}"))
-    law = path_law(path, block.law, place)
+    return in_whole_ticks(path, path_law(path, block.law, place), dt, place)
+
+
+def standing(path: PosePath) -> PlannedPath:
+    """The plan of a path that is nothing."""
+    still = Trapezoid(0.0, 0.0, 0.0, 0.0)
+    return PlannedPath(path, still, 0, still)
+
+
+def in_whole_ticks(path: PosePath, law: TimeLaw, dt: float, place: Place) -> PlannedPath:
+    """The plan of a path whose law is stretched to whole ticks. Raises MotionError, IRL425, for too many."""
     ticks = ticks_of_move(law.duration, dt, place)
     return PlannedPath(path, law.stretched(ticks * dt), ticks, law)
 
@@ -70,22 +83,30 @@ def _path(block: MoveBlock, rotation: Array, position: Array, place: Place) -> S
     return Line(position, rotation, end_position, end_rotation)
 
 
-def path_law(path: PosePath, law: MotionLaw, place: Place) -> Trapezoid:
-    """Fastest trapezoid that keeps the speeds and accelerations of path and turn; TIME stretches it.
+def path_law(path: PosePath, law: MotionLaw, place: Place) -> TimeLaw:
+    """Fastest law of one line or arc that keeps the speeds and accelerations of path and turn.
 
-    The slower of the two rules, see `_along` and `_turning`.
+    The slower of the two rules, see `_along` and `_turning`. TIME stretches it, then OVERRIDE.
     """
     (way_speed, way_acc), (turn_speed, turn_acc) = _along(path, law), _turning(path, law)
     speed, acc = min(way_speed, turn_speed), min(way_acc, turn_acc)
     if min(speed, acc) < _LEAST_RATE:
         return Trapezoid(path.length, 0.0, inf, 0.0)
-    fastest = Trapezoid.fastest(path.length, speed, acc)
+    fastest: TimeLaw = Trapezoid.fastest(path.length, speed, acc)
+    if law.profile is Profile.S_CURVE:
+        bounds = (path.length, speed, acc, acc / rise_time(law))
+        fastest = fastest_s_curves(Sections(*(np.array([value]) for value in bounds)), path.length)
+    timed = with_time(fastest, law, place, lambda: _governor(path, law))
+    return timed if law.override == 1.0 else timed.stretched(timed.duration / law.override)
+
+
+def with_time(fastest: TimeLaw, law: MotionLaw, place: Place, governor: Callable[[], str]) -> TimeLaw:
+    """The law stretched to TIME where it is given. Raises MotionError, IRL421, where that is too short."""
     if law.duration is None:
         return fastest
     if law.duration < fastest.duration * (1.0 - _TIME_SLACK):
         asked, least = f"{law.duration:.6g}", f"{fastest.duration:.6g}"
-        governor = _governor(path, law)
-        raise MotionError(report("IRL421", place, asked=asked, least=least, governor=governor))
+        raise MotionError(report("IRL421", place, asked=asked, least=least, governor=governor()))
     return fastest.stretched(law.duration)
 
 

@@ -61,6 +61,10 @@ class Trapezoid:
         down = np.sqrt(2.0 * np.clip(self.length - s, 0.0, risen) / acc)
         return np.asarray(up + flat + self.ramp - down)
 
+    def acc_at(self, s: Array) -> Array:
+        """Largest |d2s/dt2| that is allowed at the ways s (N,): that of the ramps."""
+        return np.full(np.shape(s), self.acc)
+
     def stretched(self, duration: float) -> Trapezoid:
         """Same shape in another time: every speed falls by the factor by which time grows."""
         factor = duration / self.duration

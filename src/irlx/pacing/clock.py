@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.motion.trapezoid import Trapezoid
+from irlx.motion.time_law import TimeLaw
 
 Array = NDArray[np.float64]
 
@@ -27,6 +27,6 @@ class Clock:
         return int(self.s.shape[0])
 
 
-def programmed_clock(law: Trapezoid, ticks: int, dt: float) -> Clock:
+def programmed_clock(law: TimeLaw, ticks: int, dt: float) -> Clock:
     """Clock of the programmed time law over a whole number of ticks of `dt` s."""
     return Clock(*law.evaluate(dt * np.arange(1.0, ticks + 1.0)))

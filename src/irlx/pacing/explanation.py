@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.blocks import MoveBlock, WaitBlock
+from irlx.blocks import MoveBlock, PauseBlock, WaitBlock
 from irlx.pacing.demand import Demand
 from irlx.pacing.rows import MotionRows, PathPart
 from irlx.robot.kinematics import Kinematics
@@ -114,21 +114,22 @@ class TickExplanation:
 
 def explain_tick(
     rows: MotionRows,
-    start: Array,
+    rows_before: Array,
     tick: int,
     limits: JointLimits,
     weights: Array,
     kinematics: Kinematics,
     dt: float,
 ) -> TickExplanation:
-    """Explanation of a tick of a motion from rest at posture `start` (n,).
+    """Explanation of a tick of a motion.
 
-    `limits` in force; `weights` (n,) of least motion.
+    `rows_before` (2, n): the two rows before it, the same twice where it starts at rest; `limits` in force;
+    `weights` (n,) of least motion.
     """
     robot = kinematics.description
     names, prismatic = robot.joint_names, tuple(axis.is_prismatic for axis in robot.axes)
     row = tick - rows.first_tick
-    before = np.vstack([start, start, rows.q])
+    before = np.vstack([rows_before, rows.q])
     step, last_step = before[row + 2] - before[row + 1], before[row + 1] - before[row]
     asked = rows.path.demands if rows.path is not None else ()
     demand = asked[row] if row < len(asked) else None
@@ -171,20 +172,22 @@ def _problem(
 
 def _chosen(path: PathPart, row: int, demand: Demand) -> Criterion:
     """Criterion in force at a row."""
-    return path.term.at(demand.s, demand.s - (path.demands[row - 1].s if row > 0 else 0.0))
+    return path.term.at(demand.s, demand.s - (path.demands[row - 1].s if row > 0 else path.s_before))
 
 
 def _motion(rows: MotionRows) -> str:
     """The motion in the program's words."""
     if isinstance(rows.block, MoveBlock):
         return f"MOVE {rows.block.kind.value}"
+    if isinstance(rows.block, PauseBlock):
+        return "PAUSE"
     return "WAIT" if isinstance(rows.block, WaitBlock) else "RECONFIGURATION"
 
 
 def _way_of_pacing(rows: MotionRows, row: int) -> str:
-    if isinstance(rows.block, WaitBlock):
+    if isinstance(rows.block, WaitBlock | PauseBlock):
         return "the robot stands"
-    if row == len(rows) - 1:
+    if rows.stops and row == len(rows) - 1:
         return "hold tick of a stop"
     if rows.path is None:
         return "row of a motion of the joints"
@@ -197,7 +200,7 @@ def _path_tick(path: PathPart, demand: Demand, length: float) -> PathTick:
     scale = path.angle_per_s if path.is_turn else 1.0
     part = demand.twist[3:] if path.is_turn else demand.twist[:3]
     return PathTick(
-        demand.s * scale,
+        (demand.s - path.begin) * scale,
         length * scale,
         path.is_turn,
         float(np.linalg.norm(part)),

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.motion.plan_joint_line import RAMP_TIME
-from irlx.motion.trapezoid import Trapezoid
+from irlx.motion.time_law import TimeLaw
 from irlx.pacing.return_way import ReturnWay
 from irlx.robot.limits import JointLimits
 
@@ -24,7 +24,7 @@ _PEAK_BEND = 10.0 / 3.0**0.5
 """Largest first and second derivative of the quintic 10 x^3 - 15 x^4 + 6 x^5."""
 
 
-def governed_reference(way: ReturnWay, law: Trapezoid, limits: JointLimits) -> Callable[[float], Array]:
+def governed_reference(way: ReturnWay, law: TimeLaw, limits: JointLimits) -> Callable[[float], Array]:
     """Reference posture over the path parameter of a move that follows `law`.
 
     r(s) = way.reference(c(s / length)) has the posture at the start as its best one and draws it `share` of
@@ -42,7 +42,7 @@ def governed_reference(way: ReturnWay, law: Trapezoid, limits: JointLimits) -> C
     return reference
 
 
-def share_of_way(way: ReturnWay, law: Trapezoid, limits: JointLimits) -> float:
+def share_of_way(way: ReturnWay, law: TimeLaw, limits: JointLimits) -> float:
     """Part of a way that fits into a move under half of each joint's limits.
 
     With postures q(p) and p(t) = share c(x(t)) the speed is q' p_t and the acceleration q'' p_t^2 + q' p_tt;

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,6 +14,7 @@ from irlx.pacing.clock import programmed_clock
 from irlx.pacing.conditions import check_conditions
 from irlx.pacing.errors import PacingError
 from irlx.pacing.impossible import explain_broken_row
+from irlx.pacing.motion import Motion
 from irlx.pacing.options import LimitsInForce
 from irlx.pacing.posed import pose_target, posture_target
 from irlx.pacing.posture_left import JOINTS_GIVEN, ON_THE_WAY, posture_left
@@ -26,10 +29,15 @@ from irlx.robot.limits import JointLimits
 Array = NDArray[np.float64]
 
 
-def move_joints(
+def move_joints(situation: Situation, moves: Sequence[MoveBlock], in_force: LimitsInForce) -> Motion:
+    """Carry out the first of several PTPs. Raises PacingError or MotionError at its place."""
+    block = moves[0]
+    return Motion((_moved(situation, block, in_force, situation.locate(block.origin)),), in_force)
+
+
+def _moved(
     situation: Situation, block: MoveBlock, in_force: LimitsInForce, place: Place
 ) -> MotionRows | None:
-    """Carry out a PTP. Raises PacingError or MotionError at `place`."""
     end = _end_posture(situation, block, in_force, place)
     # Degrees in a program come back as radians that may be off by the last bits: nothing moves for that.
     end = np.where(np.abs(end - situation.q) <= SAME_VALUE, situation.q, end)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -21,11 +21,12 @@ from irlx.blocks import (
     CriterionBlock,
     FreezeBlock,
     LimitSwitchBlock,
+    MachineQuestion,
     MoveBlock,
     MoveKind,
     Origin,
+    PauseBlock,
     PoseTarget,
-    Question,
     ReconfigureBlock,
     ToolBlock,
     WaitBlock,
@@ -33,8 +34,11 @@ from irlx.blocks import (
 )
 from irlx.diagnostics import Diagnostic, Place
 from irlx.pacing.answers import answer_of_bounds, answer_of_last_move, answer_of_posture, way_of
+from irlx.pacing.executed import Executed
 from irlx.pacing.inputs import answer_of_inputs
 from irlx.pacing.joint_moves import move_joints
+from irlx.pacing.motion import Motion
+from irlx.pacing.notes import Notes
 from irlx.pacing.options import LimitsInForce, Options, SwitchBlock
 from irlx.pacing.path_moves import move_along_path
 from irlx.pacing.posture_left import posture_left, why_left
@@ -65,9 +69,10 @@ class Pacer:
         self.tick = 0
         self.options = Options()
         self.warnings: list[Diagnostic] = []
+        self.notes = Notes(self.warnings)
         self._last_way = (0.0, 0.0)
 
-    def answer(self, question: Question) -> tuple[float, ...]:
+    def answer(self, question: MachineQuestion) -> tuple[float, ...]:
         """Answer to a question of the interpreter, all blocks before it executed.
 
         Raises PacingError, IRL522, for the posture of a pose that none reaches.
@@ -91,8 +96,17 @@ class Pacer:
     @property
     def _situation(self) -> Situation:
         """What the next motion finds."""
-        solvers = self._solver, self._qp
-        return Situation(self._setup, self.q, self.tick, self.options, *solvers, self._locate, self.warnings)
+        return Situation(
+            self._setup,
+            self.q,
+            self.tick,
+            self.options,
+            self._solver,
+            self._qp,
+            self._locate,
+            self.warnings,
+            self.notes,
+        )
 
     @property
     def setup(self) -> PacingSetup:
@@ -103,17 +117,47 @@ class Pacer:
         """The block as it is executed here: bounds that mean the present posture lie exactly on it."""
         return snapped(block, self.q)
 
+    def carry_out(self, group: Sequence[Block]) -> Iterator[Executed]:
+        """Execute a group of `Lookahead`, block after block.
+
+        Raises PacingError or MotionError with the place of the block; the state stays where it is then.
+        """
+        if len(group) == 1 and not isinstance(group[0], MoveBlock):
+            block, tick = self.settled(group[0]), self.tick
+            yield Executed(block, tick, self.execute(block))
+            return
+        waiting = [self.settled(block) for block in group]
+        begins = True
+        while waiting:
+            first = waiting[0]
+            if not isinstance(first, MoveBlock):
+                yield Executed(waiting.pop(0), self.tick, None)
+                continue
+            motion = self._motion([block for block in waiting if isinstance(block, MoveBlock)])
+            for rows in motion.rows:
+                block = waiting.pop(0)
+                while not isinstance(block, MoveBlock):
+                    yield Executed(block, self.tick, None)
+                    block = waiting.pop(0)
+                tick = self.tick
+                yield Executed(block, tick, self._move(rows, motion, begins), begins)
+                begins = True
+            if motion.rest is not None:
+                waiting.insert(0, motion.rest)
+                begins = False
+
     def execute(self, block: Block) -> MotionRows | None:
         """Execute one block; returns the rows of a move (None for a switch or a move of no length).
 
         Raises PacingError or MotionError with the place of the block; the state stays at its start.
         """
         if isinstance(block, MoveBlock):
-            return self._move(block)
+            motion = self._motion([block])
+            return self._move(motion.rows[0], motion)
         if isinstance(block, ReconfigureBlock):
             return self._reconfigure(block)
         place = self._locate(block.origin)
-        if isinstance(block, WaitBlock):
+        if isinstance(block, WaitBlock | PauseBlock):
             return self._wait(block, place)
         if isinstance(block, LimitSwitchBlock):
             self.warnings += check_limit(block, self._robot, self._setup.limits, self.q, place)
@@ -130,7 +174,9 @@ class Pacer:
             self.options = self.options.after(block, self.q)
         return None
 
-    def _move(self, block: MoveBlock) -> MotionRows | None:
+    def _motion(self, moves: list[MoveBlock]) -> Motion:
+        """The first motion from stop to stop that moves become."""
+        block = moves[0]
         for clause in block.limits:
             place = self._locate(clause.origin)
             self.warnings += check_limit(clause, self._robot, self._setup.limits, self.q, place)
@@ -138,10 +184,16 @@ class Pacer:
         in_force = situation.in_force(block.limits)
         # A clause may have let a joint out of the switch that holds again now.
         check_inside(self.q, self._robot, in_force.limits, place)
-        carry_out = move_joints if block.kind is MoveKind.PTP else move_along_path
-        rows = carry_out(situation, block, in_force, place)
-        self._last_way = way_of(rows, situation.pose[1], situation.dt)
-        return self._moved(rows, in_force)
+        if block.kind is MoveKind.PTP:
+            return move_joints(situation, moves, in_force)
+        return move_along_path(situation, moves, in_force)
+
+    def _move(self, rows: MotionRows | None, motion: Motion, begins: bool = True) -> MotionRows | None:
+        """`_moved` for a move, or a further part of one that had to stop on its way."""
+        way = way_of(rows, self._situation.pose[1], self._setup.dt)
+        before = (0.0, 0.0) if begins else self._last_way
+        self._last_way = (before[0] + way[0], before[1] + way[1])
+        return self._moved(rows, motion.in_force)
 
     def _moved(self, rows: MotionRows | None, in_force: LimitsInForce) -> MotionRows | None:
         """The rows of a motion with its limits, the robot now standing at their end."""
@@ -151,7 +203,7 @@ class Pacer:
         self.tick += len(rows)
         return replace(rows, limits=in_force.limits)
 
-    def _wait(self, block: WaitBlock, place: Place) -> MotionRows | None:
+    def _wait(self, block: WaitBlock | PauseBlock, place: Place) -> MotionRows | None:
         setup = self._setup
         rows = waited(block, self.q, setup.dt, self.tick + 1, setup.kinematics, place)
         return self._moved(rows, self._situation.in_force())

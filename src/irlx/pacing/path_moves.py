@@ -3,40 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import hypot
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.blocks import MoveBlock
-from irlx.diagnostics import Place, report
-from irlx.motion.arc import Arc
-from irlx.motion.plan_path import PlannedPath, plan_path
+from irlx.blocks import MoveBlock, PathCourse
+from irlx.diagnostics import Place
+from irlx.motion.errors import MotionError
+from irlx.motion.plan_chain import Leg, PlannedChain, lost_blend, plan_chain
+from irlx.motion.plan_circle import circle_path
 from irlx.motion.whole_ticks import ticks_of_move
 from irlx.pacing.conditions import broken_condition, check_targets
 from irlx.pacing.demand import Demand
+from irlx.pacing.drawn_to import check_postures, postures_asked, term_of, warn_of_posture_left
 from irlx.pacing.errors import PacingError
-from irlx.pacing.impossible import (
-    Surroundings,
-    explain_failure,
-    goal_shortfall,
-    joint_value,
-    slower_than_allowed,
-)
+from irlx.pacing.impossible import Surroundings, explain_failure, goal_shortfall, slower_than_allowed
+from irlx.pacing.motion import Motion
 from irlx.pacing.options import LimitsInForce
 from irlx.pacing.path_motion import Failure, PacedPath, PathMotion, pace_path
-from irlx.pacing.posed import posed, posture_target
-from irlx.pacing.posture_left import NO_WAY, ON_THE_WAY, POSTURE_REACHED, posture_left
-from irlx.pacing.posture_term import Asked, PostureTerm, posture_term
-from irlx.pacing.postures import asked_posture
-from irlx.pacing.rows import MotionRows, PathPart, held
+from irlx.pacing.posed import Pose, end_pose, posed
+from irlx.pacing.posture_term import PostureTerm
+from irlx.pacing.rows import MotionRows, PathPart, handed_out, held
+from irlx.pacing.shared_time import share_of_time
 from irlx.pacing.situation import Situation
-from irlx.pacing.slowdown.model import Model
-from irlx.pacing.switches import check_joint_target
 from irlx.promises import PATH_ORIENTATION, PATH_POSITION
-from irlx.robot.limits import JointLimits
 from irlx.robot.task import pose_errors
-from irlx.transform.criteria.combined import Weighted
 
 Array = NDArray[np.float64]
 
@@ -44,119 +36,92 @@ _TURN_RULES = 1e3
 """A path that turns by more than this many rad per m is told in angles: its way is next to nothing."""
 
 
-def move_along_path(
-    situation: Situation, block: MoveBlock, in_force: LimitsInForce, place: Place
-) -> MotionRows | None:
-    """Carry out a LIN or CIRCLE. Raises PacingError or MotionError at `place`."""
-    end = _end_posture(situation, block, in_force, place)
-    told = posed(block, situation.kinematics, situation.pose, situation.q)
-    check_targets(told, situation.kinematics, situation.q, place)
-    plan = plan_path(told, *situation.pose, situation.dt, place)
+def move_along_path(situation: Situation, moves: Sequence[MoveBlock], in_force: LimitsInForce) -> Motion:
+    """Carry out the first stop-to-stop motion of moves along paths, those first that pass their targets.
+
+    Where the joined moves cannot be done, the first one is done alone. Raises PacingError or MotionError at
+    its place.
+    """
+    check_postures(situation, moves[0], in_force)
+    legs = _legs(situation, moves)
+    plan = plan_chain(legs, *situation.pose, situation.dt)
+    if len(plan.ends) > 1:
+        try:
+            return _motion(situation, moves, legs, plan, in_force)
+        except (MotionError, PacingError):
+            why = "joined to the next one it cannot be done"
+            situation.notes.add(lost_blend(legs[0].place, why, legs[1].place))
+            plan = plan_chain(legs[:1], *situation.pose, situation.dt)
+    return _motion(situation, moves, legs, plan, in_force)
+
+
+def _legs(situation: Situation, moves: Sequence[MoveBlock]) -> list[Leg]:
+    """Moves as motions of the tool, each from where the one before was to end."""
+    start, legs = situation.pose, []
+    for move in moves:
+        told = posed(move, situation.kinematics, start, situation.q)
+        check_targets(told, situation.kinematics, situation.q, situation.locate(move.origin))
+        legs.append(Leg(told, situation.locate(move.origin)))
+        start = _end(told, start, legs[-1].place)
+    return legs
+
+
+def _end(move: MoveBlock, start: Pose, place: Place) -> Pose:
+    """Where a move ends that starts at a pose: a CIRCLE with ANGLE elsewhere than at its target."""
+    if move.arc is None or move.arc.angle is None:
+        return end_pose(move, start)
+    arc = circle_path(move, *start, place)
+    return arc.end_rotation, arc.end_position
+
+
+def _motion(
+    situation: Situation,
+    moves: Sequence[MoveBlock],
+    legs: Sequence[Leg],
+    plan: PlannedChain,
+    in_force: LimitsInForce,
+) -> Motion:
+    block, place = moves[0], legs[0].place
+    if plan.points and block.law.duration is not None:
+        block = replace(block, law=replace(block.law, duration=share_of_time(legs[0], situation.pose)))
+        own = replace(legs[0].block, law=block.law)
+        plan = plan_chain([Leg(own, place)], *situation.pose, situation.dt)
+    for note in plan.notes:
+        situation.notes.add(note)
+    rest = _rest(moves[plan.legs], plan.points, block) if plan.points else None
+    drawn = postures_asked(situation, block, plan, in_force, place)
     if plan.ticks == 0:
-        _warn_of_posture_left(situation, end, situation.q, block, place)
-        return None
-    via = _via(situation, block, plan, in_force, place)
+        warn_of_posture_left(situation, drawn, situation.q, block, place)
+        return Motion((None,), in_force, rest)
     model = situation.model(in_force)
-    wanted = None if end is None else Asked(end, via)
-    term = _term(situation, block, plan, model, wanted, in_force.limits)
-    motion = _motion(situation, plan, term, place)
-    paced = pace_path(motion, model, situation.solver)
+    term = term_of(situation, block, plan, model, drawn, in_force.limits)
+    paced = pace_path(_path_motion(situation, plan, term, place), model, situation.solver)
     if isinstance(paced, Failure):
         around = Surroundings(situation.kinematics, in_force.limits, situation.free, in_force.told)
         goal = goal_shortfall(around, plan.path.end_rotation, plan.path.end_position, situation.q)
         raise PacingError(explain_failure(paced, around, plan, situation.tick + 1, goal, place))
-    _warn_of_posture_left(situation, end, paced.q[-1], block, place)
-    return _rows(situation, block, plan, paced)
+    warn_of_posture_left(situation, drawn, paced.q[-1], block, place)
+    rows = _rows(situation, block, plan, paced)
+    touched = len(plan.ends)
+    handed: list[MotionRows | None] = [rows]
+    if touched > 1:
+        handed = handed_out(rows, moves[:touched], plan.ends)
+    return Motion(tuple(handed), in_force, rest)
 
 
-# ---- what the move is drawn to
+def _rest(block: MoveBlock, points: int, done: MoveBlock) -> MoveBlock:
+    """What is left of a move along a PATH behind its first `points` points, which `done` has carried out."""
+    course = block.path
+    if course is None:
+        raise TypeError("a motion stops inside a move only along a PATH")
+    law = block.law
+    if law.duration is not None and done.law.duration is not None:
+        law = replace(law, duration=law.duration - done.law.duration)
+    left = PathCourse(course.points[points:], course.reconfigurations[points:])
+    return replace(block, law=law, course=left if left.points else None)
 
 
-def _end_posture(
-    situation: Situation, block: MoveBlock, in_force: LimitsInForce, place: Place
-) -> Array | None:
-    """The posture (n,) that a move is to end in: that of RECONFIGURATION, else its target if it is one.
-
-    A CIRCLE with ANGLE does not end at its target: it is not drawn to the target's posture.
-    """
-    end = None
-    given = posture_target(block.target, situation.q)
-    if given is not None and (block.arc is None or block.arc.angle is None):
-        end = np.array(given.values)
-        check_joint_target(end, situation.robot, in_force.limits, place)
-    if block.reconfiguration is not None:
-        end = asked_posture(block.reconfiguration, situation, in_force, place)
-    return end
-
-
-def _via(
-    situation: Situation, block: MoveBlock, plan: PlannedPath, in_force: LimitsInForce, place: Place
-) -> tuple[float, Array] | None:
-    """Share of the way at the via point of a CIRCLE, and the posture to be drawn to there.
-
-    None where none is asked for, or a travel by ANGLE does not come to the via point.
-    """
-    asked = None if block.arc is None else block.arc.via_reconfiguration
-    share = plan.path.share_at_via if isinstance(plan.path, Arc) else None
-    if asked is None or share is None:
-        return None
-    return share, asked_posture(asked, situation, in_force, place)
-
-
-def _term(
-    situation: Situation,
-    block: MoveBlock,
-    plan: PlannedPath,
-    model: Model,
-    asked: Asked | None,
-    limits: JointLimits,
-) -> PostureTerm:
-    cyclic = situation.options.cyclic_posture
-    term = posture_term(model, situation.q, plan.programmed, asked, cyclic, situation.qp)
-    return term.with_terms(_added_terms(situation, block, plan, limits), plan.programmed)
-
-
-def _added_terms(
-    situation: Situation, block: MoveBlock, plan: PlannedPath, limits: JointLimits
-) -> tuple[Weighted, ...]:
-    chosen = situation.options.criteria_of(block.criteria)
-    if not chosen:
-        return ()
-    from irlx.pacing.criteria import added_terms
-    from irlx.transform.criteria.library import TermSetting
-
-    speed, turns = plan.programmed.speed, plan.path.is_pure_turn
-    turning = situation.robot.reach * speed * (1.0 if turns else plan.path.turn_rate)
-    tool_speed = hypot(0.0 if turns else speed, turning)
-    weights, q = situation.setup.weights, situation.q
-    return added_terms(
-        chosen, TermSetting(situation.kinematics, limits, weights, q, tool_speed), situation.locate
-    )
-
-
-def _warn_of_posture_left(
-    situation: Situation, posture: Array | None, q: Array, block: MoveBlock, place: Place
-) -> None:
-    """Warn of what is left to the posture asked for where a move ends in q (n,)."""
-    if posture is None:
-        return
-    robot = situation.robot
-    if block.reconfiguration is not None:
-        why = NO_WAY if q is situation.q else ON_THE_WAY
-        situation.warnings.extend(posture_left(posture - q, why, robot, place))
-        return
-    left = np.abs(posture - q)
-    joint = int(np.argmax(left))
-    if left[joint] > POSTURE_REACHED:
-        difference = joint_value(robot, joint, float(left[joint]))
-        warned = report("IRL348", place, joint=robot.axes[joint].name, difference=difference)
-        situation.warnings.append(warned)
-
-
-# ---- its rows
-
-
-def _motion(situation: Situation, plan: PlannedPath, term: PostureTerm, place: Place) -> PathMotion:
+def _path_motion(situation: Situation, plan: PlannedChain, term: PostureTerm, place: Place) -> PathMotion:
     dt, setup = situation.dt, situation.setup
     longest = setup.max_slow * plan.programmed.duration
 
@@ -168,7 +133,7 @@ def _motion(situation: Situation, plan: PlannedPath, term: PostureTerm, place: P
     return PathMotion(plan, situation.q, term, dt, situation.tick + 1, ticks_of, setup.modifiers)
 
 
-def _rows(situation: Situation, block: MoveBlock, plan: PlannedPath, paced: PacedPath) -> MotionRows:
+def _rows(situation: Situation, block: MoveBlock, plan: PlannedChain, paced: PacedPath) -> MotionRows:
     position_error, orientation_error, tool_position, tool_rotation = _tool(situation, paced)
     if broken_condition(paced.q, situation.kinematics) is not None:
         raise ArithmeticError("a solved tick breaks a constraint: the inverse transform is at fault")

@@ -72,6 +72,16 @@ def _moved(target: PoseIncrement, start: Pose) -> PoseTarget:
     return PoseTarget(_floats3(position + rotation @ shift), _quaternion(turned))
 
 
+def end_pose(move: MoveBlock, start: Pose) -> Pose:
+    """Pose of the last target of a move that `posed` has been given; one without orientation keeps it."""
+    last = start
+    for target in move.targets:
+        if not isinstance(target, PoseTarget):
+            raise TypeError("the targets of the move are not poses yet")
+        last = _pose_of(target, last if move.path is not None else start)
+    return last
+
+
 def _pose_of(target: PoseTarget, before: Pose) -> Pose:
     rotation = before[0]
     if target.orientation is not None:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
-from irlx.motion.trapezoid import Trapezoid
+from irlx.motion.time_law import TimeLaw
 from irlx.pacing.governed_return import governed_reference
 from irlx.pacing.return_way import return_way
 from irlx.pacing.slowdown.model import Model
@@ -28,17 +28,16 @@ class PostureTerm:
     """Criterion of a move: `at(s, advance)` of a tick that ends at path parameter s, `advance` behind the one
     before.
 
-    `draws` tells that it draws the joints to a posture, and `through` at which path parameter on the way
-    another one is asked for, None for nowhere; `otherwise` is the term for a motion that it makes
-    impossible.
+    `draws` tells that it draws the joints to a posture, and `through` at which path parameters on the way
+    others are asked for; `otherwise` is the term for a motion that it makes impossible.
     """
 
     at: Callable[[float, float], Criterion]
     draws: bool
-    through: float | None = None
+    through: tuple[float, ...] = ()
     otherwise: PostureTerm | None = None
 
-    def with_terms(self, terms: tuple[Weighted, ...], law: Trapezoid) -> PostureTerm:
+    def with_terms(self, terms: tuple[Weighted, ...], law: TimeLaw) -> PostureTerm:
         """The same with added terms, which act by the time that the way takes at the law's cruising speed."""
         if not terms:
             return self
@@ -55,28 +54,29 @@ class PostureTerm:
 class Asked:
     """Postures that a move is drawn to: `end` (n,), to be reached with its target.
 
-    `via`, where there is one, is a share of the way, inside 0..1, and the posture (n,) to be reached there.
+    `on_the_way` are shares of the way, rising inside 0..1, each with the posture (n,) to be reached there.
     """
 
     end: Array
-    via: tuple[float, Array] | None = None
+    on_the_way: tuple[tuple[float, Array], ...] = ()
 
     def reference(self, start: Array) -> Callable[[float], Array]:
         """Posture (n,) at a share of the way, from `start` (n,) to the end.
 
-        In step with the share, or through `via` without a jump of its rate and, of every joint, without a
-        value beyond the two postures that it is between: a cubic between each two, by Fritsch and Butland.
+        In step with the share, or through the postures on the way without a jump of its rate and, of every
+        joint, without a value beyond the two postures that it is between: a cubic between each two, by
+        Fritsch and Butland.
         """
-        if self.via is None:
+        if not self.on_the_way:
             way = self.end - start
             return lambda share: np.asarray(start + share * way)
-        share_at_via, via = self.via
-        curve = PchipInterpolator([0.0, share_at_via, 1.0], np.array([start, via, self.end]))
+        shares, postures = zip(*self.on_the_way, strict=True)
+        curve = PchipInterpolator([0.0, *shares, 1.0], np.array([start, *postures, self.end]))
         return lambda share: np.asarray(curve(share))
 
 
 def posture_term(
-    model: Model, start: Array, law: Trapezoid, asked: Asked | None, cyclic: Array | None, qp: QpSolver
+    model: Model, start: Array, law: TimeLaw, asked: Asked | None, cyclic: Array | None, qp: QpSolver
 ) -> PostureTerm:
     """Posture term of a move that starts at posture `start` (n,) and follows `law`.
 
@@ -86,9 +86,9 @@ def posture_term(
     """
     weights = model.weights
     if asked is not None:
-        on_the_way = asked.reference(start)
-        through = None if asked.via is None else asked.via[0] * law.length
-        return PostureTerm(lambda s, _: Posture(weights, on_the_way(s / law.length)), True, through)
+        reference_at = asked.reference(start)
+        through = tuple(share * law.length for share, _ in asked.on_the_way)
+        return PostureTerm(lambda s, _: Posture(weights, reference_at(s / law.length)), True, through)
     if cyclic is not None:
         # Far off its pose the stored posture may have no best one near by on some piece of the path: then the
         # posture stays as far as the tool lets it, and the next moves lead on from where it is.

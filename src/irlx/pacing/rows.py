@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.blocks import MoveBlock, ReconfigureBlock, WaitBlock
-from irlx.motion.trapezoid import Trapezoid
+from irlx.blocks import MoveBlock, PauseBlock, ReconfigureBlock, WaitBlock
+from irlx.motion.time_law import TimeLaw
 from irlx.pacing.demand import Demand
 from irlx.pacing.posture_term import PostureTerm
 from irlx.pacing.slowing import Slowing
@@ -24,22 +26,25 @@ class PathPart:
     `demands` of the rows (the hold tick has none), posture `term` in force, the programmed `law`;
     `is_turn`: what counts is an angle, of `angle_per_s` rad for each unit of s; `planned`: the motion was
     planned as a whole because ordinary ticks would have broken a bound; `slowings`: the stretches that took
-    longer than programmed; `free` (n,): the joints that were not frozen.
+    longer than programmed; `free` (n,): the joints that were not frozen. Of a move that is joined to others
+    the path parameter counts over all of them: it `begin`s there, and was `s_before` in the row before.
     """
 
     demands: tuple[Demand, ...]
     term: PostureTerm
-    law: Trapezoid
+    law: TimeLaw
     is_turn: bool
     angle_per_s: float
     planned: bool
     slowings: tuple[Slowing, ...]
     free: NDArray[np.bool_]
+    begin: float = 0.0
+    s_before: float = 0.0
 
 
 @dataclass(frozen=True)
 class MotionRows:
-    """What a move, reconfiguration or wait becomes: rows at consecutive ticks, the last one a hold.
+    """What a move, reconfiguration or wait becomes: rows at consecutive ticks, a hold last if it `stops`.
 
     `q` (N, n) rad or m; `tool_position` (N, 3) m and `tool_rotation` (N, 3, 3) of the tool in the
     world; `path_position_error` (N,) m and `path_orientation_error` (N,) rad against the demanded
@@ -48,7 +53,7 @@ class MotionRows:
     `limits` in force, None for the robot's own; `path`, None where no path was asked for.
     """
 
-    block: MoveBlock | ReconfigureBlock | WaitBlock
+    block: MoveBlock | ReconfigureBlock | WaitBlock | PauseBlock
     first_tick: int
     q: Array
     tool_position: Array
@@ -61,6 +66,7 @@ class MotionRows:
     iterations: int
     limits: JointLimits | None = None
     path: PathPart | None = None
+    stops: bool = True
 
     def __len__(self) -> int:
         return int(self.q.shape[0])
@@ -69,3 +75,65 @@ class MotionRows:
 def held(rows: Array) -> Array:
     """Rows with the last one repeated: the hold tick of a stop."""
     return np.concatenate([rows, rows[-1:]])
+
+
+def handed_out(
+    rows: MotionRows, blocks: Sequence[MoveBlock], ends: Sequence[float]
+) -> list[MotionRows | None]:
+    """Rows of joined moves, to each those up to the tick nearest to where it hands over to the next.
+
+    `ends` are the path parameters of these places, the last one that of the stop, which all rows left go to.
+    None for a move so short that no row falls to it.
+    """
+    path = rows.path
+    if path is None:
+        raise TypeError("only moves along a path are joined")
+    s = np.array([demand.s for demand in path.demands])
+    cuts = [int(np.argmin(np.abs(s - end))) + 1 for end in ends[:-1]]
+    lasts = np.maximum.accumulate([0, *cuts, len(rows)]).tolist()
+    begins = [0.0, *ends]
+    return [
+        _part(rows, path, block, (first, last), (begins[k], begins[k + 1])) if last > first else None
+        for k, (block, (first, last)) in enumerate(zip(blocks, pairwise(lasts), strict=True))
+    ]
+
+
+def _part(
+    rows: MotionRows, path: PathPart, block: MoveBlock, span: tuple[int, int], way: tuple[float, float]
+) -> MotionRows:
+    first, last = span
+    part = slice(first, last)
+    # A stretch may reach into the moves beside it: it is told once, where it costs most.
+    slowings = tuple(
+        replace(found, first_row=found.first_row - first, last_row=found.last_row - first)
+        for found in path.slowings
+        if way[0] <= found.s < way[1]
+    )
+    own = replace(
+        path,
+        demands=path.demands[part],
+        slowings=slowings,
+        begin=way[0],
+        s_before=path.demands[first - 1].s if first > 0 else 0.0,
+    )
+    return replace(
+        rows,
+        block=block,
+        first_tick=rows.first_tick + first,
+        **{name: getattr(rows, name)[part] for name in _BY_ROW},
+        length=way[1] - way[0],
+        path=own,
+        stops=last == len(rows),
+        iterations=rows.iterations if first == 0 else 0,
+    )
+
+
+_BY_ROW = (
+    "q",
+    "tool_position",
+    "tool_rotation",
+    "path_position_error",
+    "path_orientation_error",
+    "active",
+    "s",
+)

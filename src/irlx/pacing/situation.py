@@ -13,6 +13,7 @@ from irlx.blocks import LimitClause, Origin
 from irlx.diagnostics import Diagnostic, Place
 from irlx.pacing.demand import DemandModifier
 from irlx.pacing.inputs import Inputs
+from irlx.pacing.notes import Notes
 from irlx.pacing.options import LimitsInForce, Options, limits_in_force
 from irlx.pacing.slowdown.model import Model
 from irlx.robot.description import RobotDescription
@@ -45,7 +46,7 @@ class PacingSetup:
 class Situation:
     """The robot at rest in posture `q` (n,) at a tick, the options in force, and what solves its ticks.
 
-    `warnings` collects what is found on the way, also before an error.
+    `warnings` and `notes` collect what is found on the way, also before an error.
     """
 
     setup: PacingSetup
@@ -56,6 +57,7 @@ class Situation:
     qp: ProxQpSolver
     locate: Callable[[Origin], Place]
     warnings: list[Diagnostic]
+    notes: Notes
 
     @property
     def kinematics(self) -> Kinematics:

@@ -96,7 +96,7 @@ def _slowed(
         last_tick=last,
         first_time=first * dt,
         last_time=last * dt,
-        way=slowing.s * scale,
+        way=(slowing.s - path.begin) * scale,
         length=rows.length * scale,
         turns=path.is_turn,
         requested=slowing.requested * scale,

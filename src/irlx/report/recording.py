@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from irlx.blocks import Block, MoveBlock, ReconfigureBlock
+from irlx.blocks import MoveBlock, ReconfigureBlock
 from irlx.diagnostics import Diagnostic
-from irlx.pacing.rows import MotionRows
+from irlx.pacing.executed import Executed
 from irlx.promises import PATH_POSITION
 from irlx.report.events import Slowed, limit_events, slowed_events
 from irlx.report.returns import returns
@@ -60,14 +60,19 @@ class Recording:
         return (self._rows - 1) * self._header.dt
 
     @property
-    def last_posture(self) -> Array:
-        """The last row of q, (n,)."""
-        return next(segment.q[-1] for segment in reversed(self._segments) if len(segment.q))
+    def last_postures(self) -> Array:
+        """The last two rows of q (2, n); where there is but one, twice that."""
+        rows: list[Array] = []
+        for segment in reversed(self._segments):
+            rows = [*segment.q[-2:], *rows][-2:]
+            if len(rows) == 2:
+                break
+        return np.array([rows[0], rows[-1]])
 
-    def add(self, block: Block, tick: int, rows: MotionRows | None) -> None:
-        """Add a block that began at `tick`, and the rows it became."""
-        last = self._segments[-1]
-        record = BlockRecord(tick, block)
+    def add(self, executed: Executed) -> None:
+        """Add a block, or a further part of it, and the rows it became."""
+        last, block, rows = self._segments[-1], executed.block, executed.rows
+        record = BlockRecord(executed.tick, block) if executed.begins else None
         if rows is None:
             nothing = last.q[:0], last.block[:0], last.tool[:0], last.active[:0]
             self._segments.append(_Segment(record, *nothing, self._header.limits))

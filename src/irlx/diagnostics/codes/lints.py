@@ -38,4 +38,14 @@ LINTS: tuple[Code, ...] = (
         "the path that begins here at {begin} does not come back: it ends at {end}",
         "CYCLICSTART brings the posture back where the tool comes back",
     ),
+    warning(
+        "IRL312",
+        "STATUS {status} of a ROBTARGET is carried and not compared: it chooses no posture",
+        "leave it at 0; a posture is chosen by joint values or by WITH RECONFIGURATION",
+    ),
+    info(
+        "IRL313",
+        "a ROBTARGET does not fix the posture of a robot with {joints} joints",
+        "teach a JOINT, or say WITH RECONFIGURATION, where the posture matters",
+    ),
 )

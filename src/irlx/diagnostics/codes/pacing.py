@@ -1,6 +1,6 @@
 """IRL34x and IRL42x: options and targets that do not fit the robot as it stands."""
 
-from irlx.diagnostics.codes.code import error, warning
+from irlx.diagnostics.codes.code import error, info, warning
 
 PACING = (
     error("IRL340", "{word}: the lower bound is above the upper one for {joints}", "exchange the two"),
@@ -92,6 +92,26 @@ PACING = (
         "IRL430",
         "the target is off where no joint of {robot} moves the tool: {off}, in the tool frame",
         "give the target the values that the tool has there; the robot's task leaves them out",
+    ),
+    info(
+        "IRL432",
+        "the move stops at {where} instead of blending: {reason}",
+        "leave out C_CP and C_PASS where the stop is meant",
+    ),
+    info(
+        "IRL433",
+        "the blend of {asked} mm at {where} is cut to {used} mm: half of the shorter way beside it",
+        "ask for a smaller C_CP, or put the targets farther apart",
+    ),
+    error(
+        "IRL434",
+        "{first} and {last} of the PATH are {distance} mm apart: neighbours must differ",
+        "leave one of the two points out",
+    ),
+    error(
+        "IRL435",
+        "the spline turns back on itself at point {point} of the PATH, where it has no direction",
+        "put a point beside the way, or use MOVE LIN PATH, which stops there",
     ),
     error("IRL424", "the target puts {joint} at {value}, outside its limits {lower} to {upper}"),
 )

@@ -94,6 +94,8 @@ class Calls(Context):
             self.unknown_arguments(arguments)
             return Typed(type)
         value = tuple([part.value for part in found]) if found else None
+        if len(found) > 1:
+            self.status(type, arguments[1], found[1])
         if type is ORIENTATION and value is not None:
             self.unit_length(node, value)
         return Typed(type, value)

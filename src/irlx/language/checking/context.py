@@ -75,6 +75,12 @@ class Context:
         """Add a finding that is no mistake by itself."""
         self.lints.append(report(code, self.place(node), related=related, **data))
 
+    def status(self, type: Type, node: tree.Node, found: Typed) -> None:
+        """The value of the field STATUS of a ROBTARGET; one other than 0 says more than is looked at."""
+        is_number = isinstance(found.value, int) and not isinstance(found.value, bool)
+        if type is self.names.types.get("robtarget") and is_number and found.value != 0:
+            self.lint("IRL312", node, status=found.value)
+
     def mismatch(self, node: tree.Node, expected: str, found: str) -> None:
         """Add the finding on a value of another type than is expected."""
         help = _WHOLE_NUMBERS if (expected, found) == ("INT", "REAL") else ""

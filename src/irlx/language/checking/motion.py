@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from irlx.language import tree
+from irlx.language.builtins import MOVE_PARAMETERS
 from irlx.language.checking.context import Settled, Typed
 from irlx.language.checking.type_forms import TypeForms
 from irlx.language.types import (
@@ -34,6 +35,8 @@ LIMIT_TYPES = {
     "SPEED": ("main_joint_speed_min", "main_joint_speed_max"),
     "ACCELERATION": ("main_joint_accel_min", "main_joint_accel_max"),
 }
+_FIXED_JOINTS = 6
+"""A robot with more joints has many postures near each other for one pose."""
 _TOLERANCE = Record("TOLERANCE", tuple((name, REAL) for name in ("dx", "dy", "dz", "da", "db", "dc")))
 
 
@@ -59,10 +62,12 @@ class Motion(TypeForms):
         for target in move.targets:
             found = self._listed(target, candidates) if move.path else self._target(target, candidates)
             types.append(found.type)
+            self._posture_left_open(move, target, found)
             if self.in_main:
                 self.facts.targets[id(target)] = found.type, self._settled(target, found)
         for param in move.params:
-            self._parameter(param, _PARAMETER_TYPES.get(param.name.key, REAL))
+            known = REAL if param.name.key in MOVE_PARAMETERS else UNKNOWN
+            self._parameter(param, _PARAMETER_TYPES.get(param.name.key, known))
             if param.name.key == "angle" and move.kind == "CIRCLE":
                 self._angle(param)
         for clause in move.clauses:
@@ -85,6 +90,14 @@ class Motion(TypeForms):
         targets, postures = sum(map(_number, points)), sum(map(_number, found))
         if postures != targets and UNKNOWN not in (*points, *found):
             self.add("IRL405", clause, targets=targets, postures=postures)
+
+    def _posture_left_open(self, move: tree.Move, target: tree.Expression, found: Typed) -> None:
+        """Tell of a ROBTARGET that is reached in any posture."""
+        joints = self.joints.number
+        if joints is None or joints <= _FIXED_JOINTS or found.type is not self.names.types["robtarget"]:
+            return
+        if not any(isinstance(clause, tree.WithReconfiguration) for clause in move.clauses):
+            self.lint("IRL313", target, joints=joints)
 
     def _target(self, target: tree.Expression, candidates: tuple[Type, ...]) -> Typed:
         if isinstance(target, tree.Aggregate):

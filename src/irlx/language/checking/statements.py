@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 from irlx.language import tree
@@ -54,6 +55,10 @@ class Statements(Motion, Channels):
         found = self.fitted(node.value, type)
         if entry is not None:
             entry.set(found.value, whole=not node.target.selectors)
+        *outer, last = node.target.selectors or (None,)
+        if isinstance(last, tree.Field) and last.key == "status":
+            whole = replace(node.target, selectors=tuple(outer))
+            self.status(self.trial(lambda: self.typed(whole)).typed.type, node.value, found)
 
     def _if(self, node: tree.If) -> None:
         for branch in node.branches:

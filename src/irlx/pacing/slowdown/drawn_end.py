@@ -34,27 +34,29 @@ def with_drawn_end(
     walked: Array,
     bounds: tuple[Array, Array],
     criterion_of: Callable[[float, float], Criterion],
-    through: int | None = None,
+    through: Sequence[int] = (),
 ) -> Array:
     """Postures (N + 1, n) of a walk, led to the best end for the criterion of the last pose.
 
-    `bounds` are lower and upper positions (N + 1, n). `through` is an inner knot at which the walk is led to
-    the best posture as well. The walk stays as it is where it has the best
+    `bounds` are lower and upper positions (N + 1, n). `through` are inner knots, rising, at which the walk is
+    led to the best posture as well. The walk stays as it is where it has the best
     posture, or where no such lead keeps the positions.
     """
     leading = _Leading(model, grid, bounds, criterion_of)
-    last = grid.intervals
-    if through is None:
-        return leading.led(walked, last, [_rise(last, 0, last), _rise(last, last - LEAD, last)])
-    near, far = min(LEAD, through), min(LEAD, last - through)
-    bumps = [
-        _rise(last, through - before, through) - _rise(last, through, through + after)
-        for before, after in ((through, last - through), (near, far))
-    ]
-    walked = leading.led(walked, through, bumps)
-    # What leads to the end begins behind that knot, which stays as it is.
-    rises = [_rise(last, through, last), _rise(last, last - far, last)]
-    return leading.led(walked, last, rises, kept=through)
+    last, kept = grid.intervals, 0
+    knots = sorted(set(through))
+    for knot, beyond in zip(knots, [*knots[1:], last], strict=False):
+        room = knot - kept, beyond - knot
+        near = min(LEAD, room[0]), min(LEAD, room[1])
+        bumps = [
+            _rise(last, knot - before, knot) - _rise(last, knot, knot + behind)
+            for before, behind in (room, near)
+        ]
+        walked = leading.led(walked, knot, bumps, kept)
+        # What leads to the next one begins behind this knot, which stays as it is.
+        kept = knot
+    rises = [_rise(last, kept, last), _rise(last, last - min(LEAD, last - kept), last)]
+    return leading.led(walked, last, rises, kept)
 
 
 def _rise(intervals: int, first: int, last: int) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.motion.pose_path import PosePath, Poses
-from irlx.motion.trapezoid import Trapezoid
+from irlx.motion.time_law import TimeLaw
 
 Array = NDArray[np.float64]
 
@@ -55,7 +55,7 @@ class PathGrid:
         return int(np.clip(np.argmin(np.abs(self.s - s)), 1, self.intervals - 1))
 
 
-def path_grid(path: PosePath, law: Trapezoid) -> PathGrid:
+def path_grid(path: PosePath, law: TimeLaw) -> PathGrid:
     """Knots of a path that is programmed to be run by `law`.
 
     Pieces between the corners of the law are cut evenly, into intervals of about `STEP` at full

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -43,12 +44,12 @@ def timed_curves(
     walked: Array,
     bounds: tuple[Array, Array],
     acc: float,
-    pinned: int | None = None,
+    pinned: Sequence[int] = (),
 ) -> list[TimedCurve]:
     """The rungs for the walked postures (N + 1, n), fastest first; none that leaves the position limits.
 
-    `bounds` are lower and upper positions (N + 1, n), `acc` the largest |d2s/dt2|; the posture of the knot
-    `pinned` stays.
+    `bounds` are lower and upper positions (N + 1, n), `acc` the largest |d2s/dt2|; the postures of the
+    knots `pinned` stay.
     """
     programmed = float(np.sum(grid.times))
     known = np.isfinite(model.limits.acceleration_upper) | np.isfinite(model.limits.acceleration_lower)
@@ -71,7 +72,7 @@ def _timed(
     bounds: tuple[Array, Array],
     acc: float,
     rung: Smoothing | None,
-    pinned: int | None,
+    pinned: Sequence[int],
 ) -> TimedCurve | None:
     """The curve of one rung with its clock; None where it leaves the position limits or gets lost."""
     try:

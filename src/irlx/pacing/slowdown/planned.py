@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from irlx.blocks import LimitKind
 from irlx.motion.pose_path import PosePath, Poses
-from irlx.motion.trapezoid import Trapezoid
+from irlx.motion.time_law import TimeLaw
 from irlx.pacing.clock import Clock
 from irlx.pacing.demand import Demand
 from irlx.pacing.row_check import BrokenBound, excess_of
@@ -87,17 +87,17 @@ class MotionTask:
     """A motion to plan from posture `start` (n,): its path, programmed law, criterion by path parameter.
 
     `acc` is the largest |d2s/dt2|; `draws` tells that the criterion draws the joints to a posture, and
-    `through` at which path parameter on the way another one is asked for, None for nowhere.
+    `through` at which path parameters on the way others are asked for.
     """
 
     path: PosePath
-    law: Trapezoid
+    law: TimeLaw
     acc: float
     start: Array
     criterion_of: Callable[[float, float], Criterion]
     ticking: Ticking
     draws: bool = False
-    through: float | None = None
+    through: tuple[float, ...] = ()
 
 
 def plan_motion(model: Model, task: MotionTask) -> PlannedMotion | Refusal:
@@ -137,8 +137,8 @@ def _with_reserve(
         interval, solution = passage.stopped
         return Refusal(float(grid.s[interval + 1]), solution=solution)
     q = passage.q
-    # Knots are close: the one next to the place stands for it.
-    through = None if task.through is None else grid.inner_knot(task.through)
+    # Knots are close: the one next to a place stands for it.
+    through = tuple(grid.inner_knot(place) for place in task.through)
     if task.draws:
         q = with_drawn_end(model, grid, q, bounds, task.criterion_of, through)
     curves = timed_curves(model, grid, q, bounds, task.acc, through)

@@ -14,6 +14,7 @@ posture is asked for is pinned: there the price of the second term is 1e5.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -50,10 +51,10 @@ def relax(
     walked: Array,
     bounds: tuple[Array, Array],
     smoothing: Smoothing,
-    pinned: int | None = None,
+    pinned: Sequence[int] = (),
 ) -> Array:
-    """Smoother postures (N + 1, n) on the same poses, from those of the walk; first and last stay, and that
-    of the knot `pinned`.
+    """Smoother postures (N + 1, n) on the same poses, from those of the walk; first and last stay, and those
+    of the knots `pinned`.
 
     `bounds` are lower and upper positions (N + 1, n). Raises numpy.linalg.LinAlgError at singular knots.
     """
@@ -89,7 +90,7 @@ class _Relaxation:
         walked: Array,
         bounds: tuple[Array, Array],
         smoothing: Smoothing,
-        pinned: int | None,
+        pinned: Sequence[int],
     ) -> None:
         free = model.free
         self._weights = model.weights[free]
@@ -103,8 +104,7 @@ class _Relaxation:
         self._mu = smoothing.mu * (grid.step / STEP) ** 2
         self._second = _second_differences(np.diff(grid.s))
         self._attraction = np.full(len(q), (grid.step / smoothing.tau) ** 4)
-        if pinned is not None:
-            self._attraction[pinned] = _PIN_PRICE
+        self._attraction[list(pinned)] = _PIN_PRICE
 
     def step(self) -> Array:
         """Change (N - 1, f) of the free joints at the interior knots, on the null spaces."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.motion.trapezoid import Trapezoid
+from irlx.motion.time_law import TimeLaw
 from irlx.pacing.slowdown.clock import PlannedClock, plan_clock, stopping_clock
 from irlx.pacing.slowdown.clock_bounds import ClockBounds, Reserves, clock_bounds
 from irlx.pacing.slowdown.curve import JointCurve
@@ -21,7 +21,7 @@ was just allowed must still be."""
 
 
 def replan(
-    curve: JointCurve, limits: JointLimits, law: Trapezoid, acc: float, s: float, rate: float
+    curve: JointCurve, limits: JointLimits, law: TimeLaw, acc: float, s: float, rate: float
 ) -> PlannedClock | None:
     """Fastest clock from the path parameter `s`, run through at `rate` (per s) now, to the end of the curve.
 
@@ -33,7 +33,7 @@ def replan(
 
 
 def brake(
-    curve: JointCurve, limits: JointLimits, law: Trapezoid, acc: float, s: float, rate: float
+    curve: JointCurve, limits: JointLimits, law: TimeLaw, acc: float, s: float, rate: float
 ) -> PlannedClock | None:
     """Clock from `s`, run through at `rate`, to rest at the first knot of the curve that allows it.
 
@@ -43,7 +43,7 @@ def brake(
 
 
 def _rest(
-    curve: JointCurve, limits: JointLimits, law: Trapezoid, acc: float, s: float, rate: float
+    curve: JointCurve, limits: JointLimits, law: TimeLaw, acc: float, s: float, rate: float
 ) -> ClockBounds:
     """Bounds on what is left of a curve behind `s`, run through at `rate`."""
     i = min(int(np.searchsorted(curve.s, s, side="right")) - 1, len(curve.s) - 2)

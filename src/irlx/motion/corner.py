@@ -1,0 +1,120 @@
+"""Whether and how far a corner between two edges is blended."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi, sqrt
+
+import numpy as np
+
+from irlx.motion.blended_corner import SECTIONS, BlendedCorner, blended_corner
+from irlx.motion.edges import Edge
+from irlx.motion.line import Line
+
+REVERSAL = 0.01
+"""A corner this near (rad) to a reversal is one: what is left of a curve there is a stop in all but name."""
+
+LEAST_BLEND = 1e-6
+"""Shortest distance of a blend, m: curves much smaller would be made of the rounding of their points."""
+
+LEAST_PASS = 1e-4
+"""Shortest distance of a blend by C_PASS, m."""
+
+LONGEST_WAY = 1e6
+"""Longest way beside a blend, m: from there on, too, it would be made of rounding."""
+
+_CURVE_SHARE = 0.7
+"""Part of ACC that an arc may take across where a blend at the programmed speed shall join it."""
+
+_ENOUGH = 1e-3
+_MOST_STEPS = 12
+
+
+@dataclass(frozen=True)
+class Lost:
+    """Why a corner is no blend; an empty `reason` where none was asked for."""
+
+    reason: str = ""
+
+
+@dataclass(frozen=True)
+class Corner:
+    """A blend of `distance` m; `cut` tells that more was asked for than half of the shorter neighbour."""
+
+    blend: BlendedCorner
+    distance: float
+    cut: bool
+
+
+def corner_between(before: Edge, after: Edge) -> Corner | Lost:
+    """The blend between two edges that follow each other, or why there is none."""
+    asked = before.blend
+    if asked is None or asked.distance == 0.0:
+        return Lost()
+    reason = _hindrance(before, after)
+    if reason:
+        return Lost(reason)
+    room = min(before.room[1], after.room[0])
+    if asked.distance is not None:
+        distance = min(asked.distance, room)
+    else:
+        distance = min(max(_least_distance(before, after, room), LEAST_PASS), room)
+    if distance < LEAST_BLEND:
+        return Lost(f"{distance * 1000.0:.3g} mm beside the corner are next to nothing")
+    blend = blended_corner(before.path, after.path, distance)
+    return Corner(blend, distance, asked.distance is not None and asked.distance > room)
+
+
+def _hindrance(before: Edge, after: Edge) -> str:
+    """What keeps two edges from being blended, or ''."""
+    for edge, name in ((before, "this move"), (after, "the next move")):
+        if edge.path.is_nothing:
+            return f"{name} has no length"
+        if edge.path.is_pure_turn:
+            return f"{name} turns the tool on the spot"
+        if not edge.path.length < LONGEST_WAY:
+            return f"{name} is too long"
+    leaving = before.path.derivatives(np.array([before.path.length]))[0][0]
+    joining = after.path.derivatives(np.array([0.0]))[0][0]
+    angle = float(np.arctan2(np.linalg.norm(np.cross(leaving, joining)), leaving @ joining))
+    return "the path turns back on itself" if angle > pi - REVERSAL else ""
+
+
+def _least_distance(before: Edge, after: Edge, room: float) -> float:
+    """Smallest distance at which a blend keeps the speed that both neighbours have, at most `room`.
+
+    Between straight lines the bend of a blend falls exactly with 1/distance, elsewhere nearly so.
+    """
+    speeds = _speed(before), _speed(after)
+    distance = room
+    for _ in range(_MOST_STEPS):
+        strain = _strain(blended_corner(before.path, after.path, distance), (before, after), speeds)
+        if distance >= room and strain >= 1.0:
+            return room
+        following = min(distance * strain, room)
+        if isinstance(before.path, Line) and isinstance(after.path, Line):
+            return following
+        if abs(following - distance) <= _ENOUGH * distance and strain <= 1.0 + _ENOUGH:
+            return following
+        distance = max(following, 0.1 * distance)
+    return distance
+
+
+def _speed(edge: Edge) -> float:
+    """Programmed speed of an edge, less where its own curve or turn does not allow it."""
+    law = edge.law
+    curvature, turn_rate = float(np.max(edge.shape.curvature)), float(np.max(edge.shape.turn_rate))
+    across = sqrt(_CURVE_SHARE * law.acc / curvature) if curvature > 0.0 else law.speed
+    turning = law.speed_ori / turn_rate if turn_rate > 0.0 else law.speed
+    return min(law.speed, across, turning)
+
+
+def _strain(blend: BlendedCorner, edges: tuple[Edge, Edge], speeds: tuple[float, float]) -> float:
+    """How many times the accelerations allowed a blend needs at the speeds of its two sides."""
+    shape = blend.path.shape
+    worst = 0.0
+    for edge, speed, half in zip(edges, speeds, (slice(SECTIONS), slice(SECTIONS, None)), strict=True):
+        part = shape.part(half)
+        worst = max(worst, speed**2 * float(np.max(part.curvature)) / edge.law.acc)
+        worst = max(worst, 2.0 * speed**2 * float(np.max(part.turn_bend)) / edge.law.acc_ori)
+    return worst

@@ -1,0 +1,65 @@
+"""Fastest time law through sections with bounds of their own, from rest to rest."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from math import sqrt
+
+from irlx.motion.phased_law import PhasedLaw
+from irlx.motion.phases import Phases
+from irlx.motion.s_curve import add_s_curve, reach
+from irlx.motion.sections import Sections
+
+
+def fastest_trapezoids(sections: Sections, length: float) -> PhasedLaw:
+    """Ramps and cruises of constant acceleration: no law within the bounds is faster.
+
+    The squares of the rates where sections meet are cut to what can be reached from the start, then to what
+    can be braked down to the end; within a section the rate rises, cruises and falls.
+    """
+    lengths, speed, acc = sections.lengths.tolist(), sections.speed.tolist(), sections.acc.tolist()
+    square = [0.0, *(min(a, b) ** 2 for a, b in pairwise(speed)), 0.0]
+    for i, (way, bound) in enumerate(zip(lengths, acc, strict=True)):
+        square[i + 1] = min(square[i + 1], square[i] + 2.0 * bound * way)
+    for i in range(len(lengths) - 1, -1, -1):
+        square[i] = min(square[i], square[i + 1] + 2.0 * acc[i] * lengths[i])
+    phases = Phases()
+    for i, (way, fastest, bound) in enumerate(zip(lengths, speed, acc, strict=True)):
+        first, last = square[i], square[i + 1]
+        top = max(min(fastest * fastest, 0.5 * (first + last) + bound * way), first, last)
+        up, down = min((top - first) / (2.0 * bound), way), min((top - last) / (2.0 * bound), way)
+        peak, rates = sqrt(top), (sqrt(first), sqrt(last))
+        flat = max(way - up - down, 0.0)
+        if up > 0.0:
+            phases.add(2.0 * up / (rates[0] + peak), up, peak, bound, bound)
+        if flat > 0.0:
+            phases.add(flat / peak, flat, peak, bound)
+        if down > 0.0:
+            phases.add(2.0 * down / (peak + rates[1]), down, rates[1], bound, -bound)
+    return phases.law(length)
+
+
+def fastest_s_curves(sections: Sections, length: float) -> PhasedLaw:
+    """Jerk-limited motion that passes from section to section without acceleration.
+
+    For the rates where sections meet see `fastest_trapezoids`; within each section the fastest S curve.
+    """
+    rows = list(
+        zip(
+            sections.lengths.tolist(),
+            sections.speed.tolist(),
+            sections.acc.tolist(),
+            sections.jerk.tolist(),
+            strict=True,
+        )
+    )
+    rates = [0.0, *(min(a[1], b[1]) for a, b in pairwise(rows)), 0.0]
+    for i, (way, _, acc, jerk) in enumerate(rows):
+        rates[i + 1] = min(rates[i + 1], reach(rates[i], way, acc, jerk))
+    for i in range(len(rows) - 1, -1, -1):
+        way, _, acc, jerk = rows[i]
+        rates[i] = min(rates[i], reach(rates[i + 1], way, acc, jerk))
+    phases = Phases()
+    for i, row in enumerate(rows):
+        add_s_curve(phases, rates[i], rates[i + 1], *row)
+    return phases.law(length)

@@ -1,0 +1,22 @@
+"""One motion from stop to stop, as the moves see it that it carries out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from irlx.blocks import MoveBlock
+from irlx.pacing.options import LimitsInForce
+from irlx.pacing.rows import MotionRows
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Rows of the first moves of several, one entry a move (None where it moves nothing), and their limits.
+
+    `rest` is what is left of the last of these moves where the motion stops on its way, None where it does
+    not.
+    """
+
+    rows: tuple[MotionRows | None, ...]
+    in_force: LimitsInForce
+    rest: MoveBlock | None = None

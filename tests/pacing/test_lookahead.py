@@ -1,0 +1,131 @@
+"""Which blocks are carried out together (LANG-54)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from irlx.blocks import (
+    AskPose,
+    AskPosture,
+    Blend,
+    Block,
+    JointRange,
+    JointTarget,
+    LimitClause,
+    LimitKind,
+    MotionLaw,
+    MoveBlock,
+    MoveKind,
+    Origin,
+    PauseBlock,
+    Port,
+    PoseTarget,
+    SignalBlock,
+    SignalKind,
+    WaitBlock,
+)
+from irlx.diagnostics import Diagnostic, Place, Span
+from irlx.diagnostics.place import SourceText
+from irlx.pacing.lookahead import WINDOW, Lookahead
+from irlx.pacing.notes import Notes
+
+pytestmark = pytest.mark.req("LANG-54")
+
+TEXT = SourceText("p.irl", "x" * 10_000)
+LAW = MotionLaw(0.25, 1.0, 1.5, 3.0)
+PASS = Blend(0.01)
+
+
+def origin(number: int) -> Origin:
+    return Origin("p.irl", 10 * number, 10 * number + 5, 1)
+
+
+def move(number: int, blend: Blend | None = PASS, kind: MoveKind = MoveKind.LIN) -> MoveBlock:
+    target = PoseTarget((0.1 * number, 0.0, 0.0), None)
+    return MoveBlock(id=number, origin=origin(number), kind=kind, target=target, law=LAW, blend=blend)
+
+
+def signal(number: int) -> SignalBlock:
+    port = Port(f"OUT_{number}", SignalKind.BOOL)
+    return SignalBlock(id=number, origin=origin(number), port=port, value=1.0)
+
+
+def gathered(*blocks: Block) -> tuple[list[list[int]], list[Diagnostic]]:
+    notes: list[Diagnostic] = []
+    ahead = Lookahead(lambda o: Place.in_text(TEXT, Span(o.start, o.end)), Notes(notes))
+    groups = [group for block in blocks for group in ahead.take(block)]
+    groups += ahead.stop(None, "the program ends")
+    return [[block.id for block in group] for group in groups], notes
+
+
+def test_moves_that_pass_are_carried_out_with_the_one_behind() -> None:
+    groups, notes = gathered(move(1), move(2), move(3, None), move(4, None))
+    assert groups == [[1, 2, 3], [4]]
+    assert notes == []
+
+
+def test_signals_between_them_belong_to_the_group() -> None:
+    groups, notes = gathered(signal(1), move(2), signal(3), signal(4), move(5, None), signal(6))
+    assert groups == [[1], [2, 3, 4, 5], [6]]
+    assert notes == []
+
+
+@pytest.mark.parametrize(
+    "stopping",
+    [
+        WaitBlock(id=3, origin=origin(3), duration=1.0),
+        PauseBlock(id=3, origin=origin(3)),
+        replace(move(3), kind=MoveKind.PTP),
+        replace(move(3), target=JointTarget((0.0,))),
+        replace(move(3), reconfiguration=JointTarget((0.0,))),
+        replace(
+            move(3),
+            limits=(LimitClause(LimitKind.SPEED, JointRange((-1.0,), (1.0,)), origin(3)),),
+        ),
+    ],
+    ids=["wait", "pause", "ptp", "posture", "reconfiguration", "clause"],
+)
+def test_what_needs_a_stop_ends_the_group_and_is_named(stopping: Block) -> None:
+    groups, notes = gathered(move(1), move(2), stopping)
+    assert groups == [[1, 2], [3]]
+    lost = [note for note in notes if note.place is not None and note.place.span.start == 20]
+    (note,) = lost
+    assert note.code == "IRL432"
+    assert note.related[0].place.span.start == 30
+
+
+def test_the_end_of_the_program_stops_the_last_move() -> None:
+    groups, notes = gathered(move(1), move(2), signal(3))
+    assert groups == [[1, 2, 3]]
+    assert [(note.code, note.place.span.start, note.related) for note in notes if note.place] == [
+        ("IRL432", 20, ())
+    ]
+
+
+def test_a_pair_of_places_is_noted_once() -> None:
+    wait = WaitBlock(id=2, origin=origin(2), duration=1.0)
+    _, notes = gathered(*[block for _ in range(5) for block in (move(1), wait)])
+    assert len(notes) == 1
+
+
+def test_the_window_is_bounded() -> None:
+    groups, notes = gathered(*[move(number) for number in range(1, 2 * WINDOW + 6)])
+    assert [len(group) for group in groups] == [WINDOW, WINDOW, 5]
+    assert [note.place.span.start for note in notes if note.place] == [
+        10 * WINDOW,
+        20 * WINDOW,
+        20 * WINDOW + 50,
+    ]
+
+
+def test_questions_that_do_not_ask_where_the_robot_is_stop_nothing() -> None:
+    notes: list[Diagnostic] = []
+    ahead = Lookahead(lambda o: Place.in_text(TEXT, Span(o.start, o.end)), Notes(notes))
+    assert ahead.take(move(1)) == []
+    assert ahead.before(AskPose(origin(2), (0.0,))) == []
+    assert notes == []
+    assert [len(group) for group in ahead.before(AskPosture(origin(3)))] == [1]
+    assert [note.code for note in notes] == ["IRL432"]
+    assert ahead.before(AskPosture(origin(3))) == []
