@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from irlx.language import tree
+from irlx.language.builtins import MOVE_PARAMETERS
 from irlx.language.checking.context import Settled, Typed
 from irlx.language.checking.type_forms import TypeForms
 from irlx.language.types import (
@@ -65,7 +66,8 @@ class Motion(TypeForms):
             if self.in_main:
                 self.facts.targets[id(target)] = found.type, self._settled(target, found)
         for param in move.params:
-            self._parameter(param, _PARAMETER_TYPES.get(param.name.key, REAL))
+            known = REAL if param.name.key in MOVE_PARAMETERS else UNKNOWN
+            self._parameter(param, _PARAMETER_TYPES.get(param.name.key, known))
             if param.name.key == "angle" and move.kind == "CIRCLE":
                 self._angle(param)
         for clause in move.clauses:
