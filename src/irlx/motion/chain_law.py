@@ -87,7 +87,9 @@ def _with_time(
 
     top = float(np.max(bounds[k].speed))
     least = late(top) + time
-    if least > time * (1.0 + _SAME_TIME):
+    if time * (1.0 + _SAME_TIME) >= least >= time:
+        return law
+    if least > time:
         # Of time on the path, as OVERRIDE is no part of what TIME asks for.
         asked, fastest = (f"{value * stage.law.override:.6g}" for value in (time, least))
         governor = "the bounds of this move and the speeds of its neighbours"

@@ -24,10 +24,14 @@ LONGEST_WAY = 1e9
 """Way, m, from which on a spline is beyond all numbers: no robot gets through it in the time of a move."""
 
 SECTIONS = 12
-"""Sections of a spline between two of its points, each with a speed of its own."""
+"""Sections of a spline between two of its points, each with a speed of its own; more at sharp bends."""
 
-_SLOWEST = 0.05
+_SLOWEST = 0.02
 """Least |dP/du|, u the chord length, of a spline that has a direction everywhere."""
+
+_REFINEMENTS = 5
+_STEADY = 1.5
+_LEAST_TURN = 0.02
 
 _STEEPEST = 1.5
 """A turn's rate at a point over the smaller one of both sides: beyond 2 a turn would swing past its end."""
@@ -51,10 +55,26 @@ def spline_path(positions: Array, rotations: Array, place: Place) -> tuple[Curve
     if np.min(speeds) < _SLOWEST:
         point = round((int(np.argmin(speeds)) + 0.5) / SECTIONS)
         raise MotionError(report("IRL435", place, point=max(point, 1)))
+    cuts = _refined(curve, cuts)
     at = curve.length_at(knots)
     at[-1] = curve.length
     turns = _turns(at, rotations, place)
     return CurvedPath(curve, turns, cuts, positions[-1], rotations[-1]), at
+
+
+def _refined(curve: PolynomialCurve, cuts: Array) -> Array:
+    """The cuts with more between where the curvature changes so fast that few samples would miss its peak."""
+    for _ in range(_REFINEMENTS):
+        ends = curve.along(cuts)[1], curve.along(0.5 * (cuts[:-1] + cuts[1:]))[1]
+        at_cuts, between = (np.linalg.norm(bends, axis=1) for bends in ends)
+        three = np.stack([at_cuts[:-1], between, at_cuts[1:]])
+        # What turns the tangent by next to nothing may vary as it likes.
+        turn = np.max(three, axis=0) * curve.speeds(0.5 * (cuts[:-1] + cuts[1:])) * np.diff(cuts)
+        split = (np.max(three, axis=0) > _STEADY * np.min(three, axis=0)) & (turn > _LEAST_TURN)
+        if not np.any(split):
+            break
+        cuts = np.sort(np.concatenate([cuts, 0.5 * (cuts[:-1] + cuts[1:])[split]]))
+    return cuts
 
 
 def _slowest(velocities: Array) -> Array:
