@@ -11,7 +11,10 @@ import pytest
 import irlx
 from irlx.diagnostics import CATALOGUE
 
-BAD = "PROGRAM b;\nBEGIN\n  x := 1;\n  OUT_3 := TRUE;\n  MOVE LIN POSITION(1, 2, 3) WITH TOLERANCE (0, 0, 0, 0, 0, 9);\nENDPROGRAM\n"
+BAD = (
+    "PROGRAM b;\nBEGIN\n  x := 1;\n  OUT_3 := TRUE;\n"
+    "  MOVE LIN POSITION(1, 2, 3) WITH TOLERANCE (0, 0, 0, 0, 0, 9);\nENDPROGRAM\n"
+)
 
 
 @pytest.mark.req("LANG-75")

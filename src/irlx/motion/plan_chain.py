@@ -108,10 +108,14 @@ def plan_chain(legs: Sequence[Leg], start_rotation: Array, start_position: Array
 
 
 def lost_blend(
-    place: Place, reason: str, next_place: Place | None = None, where: str = "its target"
+    place: Place,
+    reason: str,
+    next_place: Place | None = None,
+    where: str = "its target",
+    what: str = "the next move",
 ) -> Diagnostic:
-    """The note, IRL432, that a move at `place` stops instead of blending into the one at `next_place`."""
-    related = () if next_place is None else (Related("the next move", next_place),)
+    """The note, IRL432, that a move at `place` stops, and `what` stops it at `next_place`."""
+    related = () if next_place is None else (Related(what, next_place),)
     return report("IRL432", place, related=related, where=where, reason=reason)
 
 
