@@ -21,6 +21,7 @@ from irlx.blocks import (
 from irlx.promises import JOINT_LINE, PATH_ORIENTATION, PATH_POSITION
 from irlx.robot.description import RobotDescription
 from irlx.streams.joint_stream import Floats
+from irlx.verifier.geometry.arcs import arc_shape
 from irlx.verifier.geometry.forward import forward
 from irlx.verifier.geometry.rotations import angle_between, from_quaternion
 from irlx.verifier.moves import MoveRows
@@ -41,12 +42,13 @@ class Place:
 
 @dataclass(frozen=True, eq=False)
 class Demand:
-    """One move: where it starts, its targets in order (via point, points of a PATH, the end), and whether it
-    passes the last one on its way to the next move, or comes from one that did."""
+    """One move: where it starts, its targets in order (via point, points of a PATH, the last one), where it ends,
+    and whether it passes that on its way to the next move, or comes from one that did."""
 
     move: MoveRows
     start: Place
     targets: tuple[Place, ...]
+    end: Place
     passes: bool
     follows: bool
 
@@ -74,6 +76,15 @@ class Placer:
             counted = start if move.block.arc is not None or not found else found[-1]
             found.append(self.place(target, counted, move.block.id))
         return tuple(found)
+
+    def end(self, move: MoveRows, start: Place, targets: tuple[Place, ...]) -> Place:
+        """Place where a move ends: its last target, or of a CIRCLE by an angle the end of that way."""
+        last, arc = targets[-1], move.block.arc
+        via = targets[0].pose
+        if arc is None or arc.angle is None or start.pose is None or via is None or last.pose is None:
+            return last
+        shape = arc_shape(start.pose[0], via[0], last.pose[0], arc.angle)
+        return last if shape is None else Place((shape.end, last.pose[1]))
 
     def place(self, target: Target, start: Place, block: int) -> Place:
         """Place of a target of a block, counted from `start` where it is an increment or keeps something."""
@@ -117,10 +128,11 @@ def demands_of(outline: Outline, moves: list[MoveRows], placer: Placer) -> list[
     found: list[Demand] = []
     for move in moves:
         follows = bool(found) and found[-1].passes
-        start = found[-1].targets[-1] if follows else ends.place(move.start, move.block.id)
+        start = found[-1].end if follows else ends.place(move.start, move.block.id)
         targets = placer.all_of(move, start)
-        passes = move.block.id in joinable and not _stands(outline, move, targets[-1], ends)
-        found.append(Demand(move, start, targets, passes, follows))
+        end = placer.end(move, start, targets)
+        passes = move.block.id in joinable and not _stands(outline, move, end, ends)
+        found.append(Demand(move, start, targets, end, passes, follows))
     return found
 
 

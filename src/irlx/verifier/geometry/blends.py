@@ -8,14 +8,11 @@ import numpy as np
 
 from irlx.streams.joint_stream import Floats
 from irlx.verifier.geometry.attitudes import BlendedTurn
-from irlx.verifier.geometry.bernstein import GAUSS, bernstein, quintic_control
+from irlx.verifier.geometry.bernstein import GAUSS, Jets, bernstein, nearest_parameters, quintic_control
 from irlx.verifier.geometry.curves import Curve
 
 CELLS = 32
 """Parts of a join by its parameter: where the nearest point is sought, and the length summed."""
-
-NEWTON = 6
-"""Steps of Newton's method from the nearest of the samples: each doubles the digits."""
 
 TANGENTS = np.linspace(0.75, 1.45, 15)
 """First derivatives by the parameter at both ends that a join may have, as parts of the circular arc between
@@ -33,14 +30,13 @@ class Blend:
     rates. It runs by a parameter u in 0..1, the orientation by the share of its length.
     """
 
-    def __init__(self, first: Curve, second: Curve, distance: float) -> None:
+    def __init__(self, first: Curve, second: Curve, distance: float, tangents: Floats = TANGENTS) -> None:
         self.distance = distance
         self._ways = first.length - distance, distance
         self._curves = first, second
         self._corner = second.points(np.zeros(1))
-        self._control = _flattest(
-            *(_jet(curve, way) for curve, way in zip(self._curves, self._ways, strict=True))
-        )
+        start, end = (_jet(curve, way) for curve, way in zip(self._curves, self._ways, strict=True))
+        self._control = _flattest(start, end, tangents)
         self._rate = 5.0 * np.diff(self._control, axis=0)
         self._change = 4.0 * np.diff(self._rate, axis=0)
 
@@ -56,15 +52,8 @@ class Blend:
         """Parameter (R,) of the point nearest to each position (R, 3)."""
         samples, points = self._samples
         apart = np.sum((positions[:, None] - points) ** 2, axis=2)
-        u = samples[np.argmin(apart, axis=1)]
-        for _ in range(NEWTON):
-            rate, change = bernstein(u, 4) @ self._rate, bernstein(u, 3) @ self._change
-            off = positions - self.points(u)
-            slope = np.sum(off * change - rate * rate, axis=1)
-            slope = np.where(slope < 0.0, slope, -np.sum(rate * rate, axis=1))
-            step = np.sum(off * rate, axis=1) / slope
-            u = np.clip(u - np.clip(step, -1.0 / CELLS, 1.0 / CELLS), 0.0, 1.0)
-        return np.asarray(u)
+        seeds = samples[np.argmin(apart, axis=1)]
+        return nearest_parameters(self._jet_at, positions, seeds, 1.0 / CELLS, 1.0)
 
     def behind(self, positions: Floats) -> Floats:
         """How far (R,) positions lie behind the plane across its end, m; negative before it."""
@@ -95,6 +84,9 @@ class Blend:
         base = self._curves[1].turning(0.0).rotation
         start, end = (curve.turning(way) for curve, way in zip(self._curves, self._ways, strict=True))
         return BlendedTurn(base, (start, end), self.length)
+
+    def _jet_at(self, u: Floats) -> Jets:
+        return self.points(u), bernstein(u, 4) @ self._rate, bernstein(u, 3) @ self._change
 
     def _length_between(self, low: Floats, high: Floats) -> Floats:
         """Length (R,) between two parameters by Gauss and Legendre."""
@@ -129,19 +121,21 @@ def _jet(curve: Curve, way: float) -> tuple[Floats, Floats, Floats]:
     return curve.points(at)[0], curve.tangents(at)[0], curve.bends(at)[0]
 
 
-def _flattest(start: tuple[Floats, Floats, Floats], end: tuple[Floats, Floats, Floats]) -> Floats:
-    """Control points (6, 3) of the join with the least largest curvature."""
+def _flattest(
+    start: tuple[Floats, Floats, Floats], end: tuple[Floats, Floats, Floats], tangents: Floats
+) -> Floats:
+    """Control points (6, 3) of the join, with one of some tangents (T,), whose largest curvature is the least."""
     half = 0.5 * float(np.arctan2(np.linalg.norm(np.cross(start[1], end[1])), start[1] @ end[1]))
     arc = float(np.linalg.norm(end[0] - start[0])) / float(np.sinc(half / np.pi))
     found = np.stack(
         [
             quintic_control(*((jet[0], size * jet[1], size**2 * jet[2]) for jet in (start, end)))
-            for size in TANGENTS * arc
+            for size in tangents * arc
         ]
     )
     rates = 5.0 * np.diff(found, axis=1)
     largest = np.max(curvature(_RATES @ rates, _CHANGES @ (4.0 * np.diff(rates, axis=1))), axis=1)
-    return np.asarray(found[np.argmin(largest + TIE / arc * np.abs(TANGENTS - EVEN_TANGENT))])
+    return np.asarray(found[np.argmin(largest + TIE / arc * np.abs(tangents - EVEN_TANGENT))])
 
 
 _RATES, _CHANGES = (bernstein(np.linspace(0.0, 1.0, 33), degree) for degree in (4, 3))

@@ -200,7 +200,11 @@ class ChainWay:
             blend = self._blends[part.leg]
             assert blend is not None
             u = blend.nearest(positions)
-            return u, np.linalg.norm(positions - blend.points(u), axis=1), blend.behind(positions) > 0.0
+            return (
+                u,
+                np.linalg.norm(positions - blend.points(u), axis=1),
+                (u >= 1.0) & (blend.behind(positions) > 0.0),
+            )
         curve = self._legs[part.leg].curve
         low, high = self._bounds(part.leg)
         hint = self._hint(part)
@@ -218,7 +222,7 @@ class ChainWay:
     ) -> NDArray[np.bool_]:
         """Which rows lie behind a sharp corner: nearer to the next leg, or going back on both."""
         following = self._legs[leg + 1].curve
-        there = np.clip(following.nearest(positions, 0.0), 0.0, following.length)
+        there = np.clip(following.nearest_at_start(positions), 0.0, following.length)
         apart = np.linalg.norm(positions - following.points(there), axis=1)
         furthest = np.maximum.accumulate(np.concatenate([[hint], way]))[1:]
         back = (furthest - way > PATH_STEP) & (apart <= off + PATH_STEP)

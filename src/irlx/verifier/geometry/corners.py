@@ -10,7 +10,7 @@ import numpy as np
 
 from irlx.promises import PATH_ORIENTATION, PATH_POSITION, PATH_STEP
 from irlx.streams.joint_stream import Floats, Integers
-from irlx.verifier.geometry.blends import Blend
+from irlx.verifier.geometry.blends import TANGENTS, Blend
 from irlx.verifier.geometry.curves import Curve, Pose
 from irlx.verifier.geometry.rotations import angle_between
 
@@ -20,8 +20,8 @@ ON_A_LEG = 1e-8
 STEPS, EXACT = 60, 1e-13
 """Steps of the search for a distance at most, and how exactly it is sought, m."""
 
-ASKED = 12
-"""Rows asked at most whether a distance fits."""
+ASKED = 16
+"""Rows asked whether a distance fits, at most: so many of those about the corner, and those furthest off."""
 
 NEAR = 0.1
 """Part of the tolerances within which a distance fits that a single row gave."""
@@ -70,7 +70,7 @@ def distance_taken(
     first, second = legs
     most = asked_for.distance
     corner = second.points(np.zeros(1))
-    found = _Rows(*rows, first.nearest(rows[0], near), second.nearest(rows[0], 0.0))
+    found = _Rows(*rows, first.nearest(rows[0], near), second.nearest_at_start(rows[0]))
     off = np.linalg.norm(found.positions - first.points(np.minimum(found.way, first.length)), axis=1)
     inside = np.clip(found.there, 0.0, second.length)
     apart = np.linalg.norm(found.positions - second.points(inside), axis=1)
@@ -82,12 +82,13 @@ def distance_taken(
     between = np.where(away <= most, np.minimum(off, apart), 0.0)[:seen]
     row = int(np.argmax(between))
     about = np.flatnonzero(away[:seen] <= most)
-    about = about[np.linspace(0, len(about) - 1, min(ASKED, len(about))).astype(np.int64)]
-    asked = found.part(about)
+    spread = about[np.linspace(0, len(about) - 1, min(ASKED, len(about))).astype(np.int64)]
+    furthest = np.argsort(between)[::-1][:ASKED]
+    asked = found.part(np.union1d(spread, furthest[between[furthest] > 0.0]))
     if not asked_for.may_be_less:
         return most if not len(about) or _worst(legs, most, asked) <= _worst(legs, 0.0, asked) else 0.0
     if between[row] > ON_A_LEG:
-        distance = _through(legs, most, found.positions[row])
+        distance = _fitting(legs, most, found.positions[row], asked)
     else:
         distance = min(most, float(np.min(away[:seen])))
     if len(about) and _worst(legs, distance, asked) > NEAR:
@@ -95,14 +96,26 @@ def distance_taken(
     return distance if distance > PATH_STEP else 0.0
 
 
-def _through(legs: tuple[Curve, Curve], most: float, position: Floats) -> float:
-    """Distance of the blend through a position (3,)."""
-    widest = Blend(*legs, most)
+def _fitting(legs: tuple[Curve, Curve], most: float, position: Floats, asked: _Rows) -> float:
+    """Distance of the blend through a position (3,) that fits rows best.
+
+    Where the tangents of a blend change with its distance, it does not change smoothly: then each is tried.
+    """
+    distance = _through(legs, most, position, TANGENTS)
+    if _worst(legs, distance, asked) <= NEAR:
+        return distance
+    found = [_through(legs, most, position, TANGENTS[k : k + 1]) for k in range(len(TANGENTS))]
+    return min([distance, *found], key=lambda d: _worst(legs, d, asked))
+
+
+def _through(legs: tuple[Curve, Curve], most: float, position: Floats, tangents: Floats) -> float:
+    """Distance of the blend, with one of some tangents, through a position (3,)."""
+    widest = Blend(*legs, most, tangents)
     to_corner = (legs[1].points(np.zeros(1)) - widest.points(np.array([widest.corner])))[0]
 
     def miss(distance: float) -> float:
         """How much nearer to the corner the position is than the blend."""
-        blend = Blend(*legs, distance)
+        blend = Blend(*legs, distance, tangents)
         return float((position - blend.points(blend.nearest(position[None]))[0]) @ to_corner)
 
     return _root(miss, most)

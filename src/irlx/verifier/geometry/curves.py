@@ -39,6 +39,9 @@ class Curve(Protocol):
         It goes on before the start and behind the end, by the tangents there or the curve itself.
         """
 
+    def nearest_at_start(self, positions: Floats) -> Floats:
+        """The same for positions (R, 3) that are about its start, if on it at all."""
+
     def points(self, way: Floats) -> Floats:
         """Positions (R, 3), m."""
 
@@ -76,6 +79,10 @@ class LineCurve:
     def nearest(self, positions: Floats, near: float) -> Floats:
         """Projection (R,) on the line."""
         return np.asarray((positions - self._start) @ self._forward)
+
+    def nearest_at_start(self, positions: Floats) -> Floats:
+        """Projection (R,) on the line."""
+        return self.nearest(positions, 0.0)
 
     def points(self, way: Floats) -> Floats:
         """Positions (R, 3)."""
@@ -126,6 +133,10 @@ class ArcCurve:
         steps = np.diff(self._shape.angles(positions), prepend=last)
         found = last + np.cumsum((steps + np.pi) % whole - np.pi)
         return np.asarray(found / self._shape.flatness)
+
+    def nearest_at_start(self, positions: Floats) -> Floats:
+        """Way (R,) along the circle, half a turn to either side."""
+        return np.asarray(self._shape.angles(positions) / self._shape.flatness)
 
     def points(self, way: Floats) -> Floats:
         """Positions (R, 3)."""

@@ -7,17 +7,21 @@ from itertools import pairwise
 
 import numpy as np
 
+from irlx.promises import PATH_POSITION
 from irlx.streams.joint_stream import Floats, Integers
 from irlx.verifier.geometry.attitudes import BlendedTurn, Turning
-from irlx.verifier.geometry.bernstein import GAUSS, bernstein
+from irlx.verifier.geometry.bernstein import GAUSS, bernstein, nearest_parameters
 from irlx.verifier.geometry.curves import Pose
 from irlx.verifier.geometry.paths import shortest_turns
 
-CELLS = 16
+CELLS = 32
 """Parts of each piece by its parameter: where the nearest point is sought, and the length summed."""
 
-NEWTON = 8
-"""Steps of Newton's method from the nearest of the samples."""
+TOGETHER, SPREAD = 32, 0.2
+"""Rows sought together, and the part by which a way on the curve may differ from that from row to row."""
+
+NEWTON, LAST_STEP = 12, 1e-13
+"""Steps of Newton's method for the parameter at a way at most, and the step after which it ends."""
 
 STEEPEST = 1.5
 """Rate of the turn at a point, over the smaller one of both sides: at most."""
@@ -58,14 +62,34 @@ class SplineCurve:
 
     def nearest(self, positions: Floats, near: float) -> Floats:
         """Way (R,) to the nearest points; before the start and behind the end along the tangents there."""
-        u = self._seek(positions, near)
-        for _ in range(NEWTON):
-            point, rate, change = self._jet(u)
-            off = positions - point
-            slope = np.sum(off * change - rate * rate, axis=1)
-            slope = np.where(slope < 0.0, slope, -np.sum(rate * rate, axis=1))
-            step = np.clip(np.sum(off * rate, axis=1) / slope, -1.0 / CELLS, 1.0 / CELLS)
-            u = np.clip(u - step, 0.0, self._pieces)
+        before, found = self.points(np.array([near])), []
+        for first in range(0, len(positions), TOGETHER):
+            rows = positions[first : first + TOGETHER]
+            found.append(self._found(rows, self._seek(rows, near, before)))
+            near, before = float(found[-1][-1]), rows[-1:]
+        return np.concatenate(found) if found else np.zeros(0)
+
+    def nearest_at_start(self, positions: Floats) -> Floats:
+        """Way (R,) to the nearest points of the first piece; before its start along the tangent."""
+        points = self._samples[: CELLS + 1]
+        apart = np.sum((positions[:, None] - points) ** 2, axis=2)
+        return self._nearest(positions, self._grid[np.argmin(apart, axis=1)])
+
+    def _found(self, positions: Floats, seeds: Floats) -> Floats:
+        """Way (R,) to the nearest points about the seeds, or, of rows that are on none of them, about any."""
+        way = self._nearest(positions, seeds)
+        off = np.linalg.norm(positions - self.points(way), axis=1)
+        lost = np.flatnonzero(off > PATH_POSITION)
+        if lost.size:
+            apart = np.sum((positions[lost, None] - self._samples) ** 2, axis=2)
+            other = self._nearest(positions[lost], self._grid[np.argmin(apart, axis=1)])
+            on_it = np.linalg.norm(positions[lost] - self.points(other), axis=1) <= PATH_POSITION
+            way[lost[on_it]] = other[on_it]
+        return way
+
+    def _nearest(self, positions: Floats, seeds: Floats) -> Floats:
+        most = float(self._pieces)
+        u = nearest_parameters(self._jet, positions, seeds, 1.0 / CELLS, most)
         way = self._way(u)
         for end, at in ((0.0, 0.0), (float(self._pieces), self.length)):
             here = u == end
@@ -112,14 +136,15 @@ class SplineCurve:
         start, end = self._turnings[piece], self._turnings[piece + 1]
         return BlendedTurn(start.rotation, (start, end), width)
 
-    def _seek(self, positions: Floats, near: float) -> Floats:
-        """Sample nearest to each position, of those not far from the row before: it may cross itself."""
+    def _seek(self, positions: Floats, near: float, before: Floats) -> Floats:
+        """Sample nearest to each position, of those about as far on as the rows went: it may cross itself."""
         points = self._samples
-        moved = np.linalg.norm(np.diff(positions, axis=0, prepend=self.points(np.array([near]))), axis=1)
-        slack = 2.0 * float(np.max(np.diff(self._ways)))
-        most = near + np.cumsum(1.5 * moved) + slack
+        moved = np.cumsum(np.linalg.norm(np.diff(positions, axis=0, prepend=before), axis=1))
+        due = np.clip(near + moved, 0.0, self.length)
+        cell = np.clip(np.searchsorted(self._ways, due) - 1, 0, len(self._ways) - 2)
+        slack = np.diff(self._ways)[cell] + SPREAD * moved
         apart = np.sum((positions[:, None] - points) ** 2, axis=2)
-        apart = np.where((self._ways > most[:, None]) | (self._ways < near - slack), np.inf, apart)
+        apart = np.where(np.abs(self._ways - due[:, None]) > slack[:, None], np.inf, apart)
         return np.asarray(self._grid[np.argmin(apart, axis=1)])
 
     def _piece(self, u: Floats) -> tuple[Integers, Floats]:
@@ -151,10 +176,13 @@ class SplineCurve:
 
     def _parameter(self, way: Floats) -> Floats:
         """Parameter u (R,) at ways (R,)."""
-        u = np.interp(way, self._ways, self._grid)
+        u, inside = np.interp(way, self._ways, self._grid), np.clip(way, 0.0, self.length)
         for _ in range(NEWTON):
             rate = np.linalg.norm(self._jet(u)[1], axis=1)
-            u = np.clip(u - (self._way(u) - np.clip(way, 0.0, self.length)) / rate, 0.0, self._pieces)
+            last = u
+            u = np.clip(u - (self._way(u) - inside) / rate, 0.0, self._pieces)
+            if not (np.abs(u - last) > LAST_STEP).any():
+                break
         return np.asarray(u)
 
     @cached_property

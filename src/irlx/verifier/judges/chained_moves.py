@@ -198,7 +198,7 @@ class ChainRows:
 
     def _add_end(self, waiting: _Waiting) -> None:
         """The chain ends at its last target, all of its way having been run."""
-        row, goal = self._lasts[-1:], self._chain[-1].targets[-1].pose
+        row, goal = self._lasts[-1:], self._chain[-1].end.pose
         assert goal is not None
         off = np.linalg.norm((waiting.positions[-1] - goal[0])[None], axis=1)
         self._tallies.goal[0].add(row, off, PATH_POSITION)

@@ -96,7 +96,7 @@ class ClosureChecks:
         """Where a move that starts at a pose, or where the one before was to end, is told to stop."""
         demand = self._evidence.demands[move.block.id]
         if demand.passes or demand.follows:
-            return None if demand.passes else demand.targets[-1].pose
+            return None if demand.passes else demand.end.pose
         return course_of(self._evidence, move, start).goal
 
     def _watch_positions(self, rows: Rows) -> None:

@@ -138,7 +138,7 @@ class ToolMoveChecks:
         if not move.finished or demand.passes:
             return
         if demand.follows:
-            goal = demand.targets[-1].pose
+            goal = demand.end.pose
         if goal is None:
             self._skipped[move.block.id] = _OTHER_FRAME
             return
