@@ -18,10 +18,10 @@ PathLike = str | os.PathLike[str]
 def check(program: PathLike, cell: PathLike | None = None) -> list[Diagnostic]:
     """All findings on a program, and on a cell file where one is given; raises nothing for its input.
 
-    Names of frames come from `cell`, or from the cell that a run would find; a `cell` that is given also
-    tells how many joints the robot has. Without `cell` this loads neither numpy nor Pinocchio.
+    Names of frames and the number of joints come from `cell`, or from the cell that a run would find; of that
+    one nothing else is looked at. Without `cell` this loads neither numpy nor Pinocchio.
     """
-    joints, of_cell = _cell_findings(cell) if cell is not None else ((), [])
+    joints, of_cell = _cell_findings(cell) if cell is not None else (None, [])
     try:
         analysis = analyse_file(program, cell, joints)
     except ProgramError as error:

@@ -1,14 +1,16 @@
-"""Options of the commands that execute a program: how long it may go on, and what its inputs say."""
+"""Options of the commands that execute a program: how long it may go on, what its inputs say, its files."""
 
 from __future__ import annotations
 
 import argparse
+import sys
+from typing import IO
 
-__all__ = ["add_execution_options"]
+__all__ = ["add_execution_options", "standard_input"]
 
 
 def add_execution_options(parser: argparse.ArgumentParser) -> None:
-    """Add `--max-steps` and `--inputs`."""
+    """Add `--max-steps`, `--inputs` and `--files`."""
     parser.add_argument(
         "--max-steps",
         type=int,
@@ -18,3 +20,11 @@ def add_execution_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--inputs", metavar="CSV", help="what inputs say: lines of time in s, input, value (else the cell's)"
     )
+    parser.add_argument(
+        "--files", metavar="DIR", help="folder in which OPEN finds and makes files (default: the program's)"
+    )
+
+
+def standard_input() -> IO[bytes] | None:
+    """What STANDARD_IN reads on the command line."""
+    return None if sys.stdin is None else sys.stdin.buffer

@@ -53,6 +53,10 @@ class Surroundings(NamedTuple):
         """Limits of corrections."""
         return self.limiter.limits
 
+    def of_task(self, correction: Array) -> Array:
+        """A correction (6,) without what the robot's task leaves out."""
+        return np.where(np.isin(np.arange(correction.size), self.kinematics.task.rows), correction, 0.0)
+
 
 @dataclass(frozen=True)
 class Corrected:
@@ -125,8 +129,7 @@ def stepped(before: Corrected, row: PlannedRow, step: Array, around: Surrounding
     correction = before.correction
     if not np.all(stays):
         correction = correction_between(row.rotation, row.position, around.kinematics.tool_pose(q))
-        counts = np.isin(np.arange(correction.size), around.kinematics.task.rows)
-        correction = np.where(counts, correction, 0.0)
+        correction = around.of_task(correction)
     rate = (correction - before.correction) / around.limiter.dt
     return Corrected(row, q, speed, correction, rate, bent=True)
 
@@ -144,7 +147,7 @@ def movable_joints(around: Surroundings) -> NDArray[np.bool_]:
     for kind in ("speed", "acceleration"):
         lower, upper = around.limits.pair(kind)
         movable &= (lower < 0.0) & (upper > 0.0)
-    return movable
+    return np.asarray(movable)
 
 
 def _pace(before: Corrected, around: Surroundings) -> Pace:

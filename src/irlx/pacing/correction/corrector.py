@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -21,11 +22,11 @@ from irlx.pacing.correction.corrected_tick import (
 )
 from irlx.pacing.correction.offset_limiter import OffsetLimiter
 from irlx.pacing.correction.plan import PlannedMotion, PlannedRow, goes_on, planned_motion
-from irlx.pacing.correction.request import read_request
+from irlx.pacing.correction.request import SIZE, read_request
 from irlx.pacing.correction.retreat import AT_GOAL, retreat_goal, retreat_step
 from irlx.pacing.correction.share import correction_limits
 from irlx.pacing.correction.tally import Tally
-from irlx.pacing.correction.tool_offset import corrected_pose
+from irlx.pacing.correction.tool_offset import corrected_pose, correction_between
 from irlx.pacing.correction.tool_rates import ToolRates
 from irlx.pacing.errors import PacingError
 from irlx.pacing.executed import Executed
@@ -61,8 +62,9 @@ class Corrector:
     def __init__(self, pacer: Pacer, rates: ToolRates, ask: Callable[[], object], tally: Tally) -> None:
         self._pacer = pacer
         setup = pacer.setup
-        self._setup, self._rates, self._ask = setup, rates, ask
+        self._rates, self._ask = rates, ask
         self._solver = TickSolver(setup.kinematics, pacer.qp, NEWTON_STEPS)
+        self._modelled = setup.kinematics
         rotation, position = setup.kinematics.tool_pose(setup.start)
         start = PlannedRow(setup.start, rotation, position, setup.start, setup.start, None)
         self._now = uncorrected(start)
@@ -88,7 +90,7 @@ class Corrector:
                 return
             around = self._surroundings(motion)
             yield from self._made_fit(motion, around)
-            self._around = around
+            self._begin(around)
             for row in motion.rows:
                 yield self._moved(row, around)
 
@@ -102,17 +104,34 @@ class Corrector:
                 break
         limits = next((part.rows.limits for part in parts if part.rows is not None), None)
         free = self._pacer.options.free_joints(self._now.q.size)
-        return planned_motion(parts, limits or self._setup.limits, free)
+        return planned_motion(parts, limits or self._pacer.setup.limits, free)
 
     def _surroundings(self, motion: PlannedMotion) -> Surroundings:
-        limiter = OffsetLimiter(correction_limits(motion.limits), self._setup.dt)
-        return Surroundings(self._solver, self._setup.weights, motion.free, limiter, self._rates)
+        setup = self._pacer.setup
+        if setup.kinematics is not self._solver.kinematics:
+            self._solver = TickSolver(setup.kinematics, self._pacer.qp, NEWTON_STEPS)
+        limiter = OffsetLimiter(correction_limits(motion.limits), setup.dt)
+        return Surroundings(self._solver, setup.weights, motion.free, limiter, self._rates)
+
+    def _begin(self, around: Surroundings) -> None:
+        """Go on under what is in force now; a new tool has a correction of its own in the same posture."""
+        now, before = self._now, self._around
+        self._around = around
+        other_tool = around.kinematics is not self._modelled
+        if other_tool:
+            self._modelled = around.kinematics
+            now = _with_tool(now, around)
+        if before is not None and not now.as_planned:
+            same = np.array_equal(around.free, before.free) and np.array_equal(around.weights, before.weights)
+            # The nearest posture is another one now, perhaps far off: nothing may jump there.
+            now = replace(now, bent=now.bent or other_tool or not same)
+        self._now = now
 
     def _moved(self, row: PlannedRow, around: Surroundings) -> CorrectedRow:
         """The row after the one emitted last, as the sensor wants it."""
         place = self._place(row)
         answer = self._ask()
-        request = read_request(answer, self._tick + 1, self._setup.kinematics.task, place)
+        request = read_request(answer, self._tick + 1, around.kinematics.task, place)
         self.tally.asked(request is not None)
         if request is not None:
             self._request = request
@@ -120,7 +139,11 @@ class Corrector:
 
     def _made_fit(self, motion: PlannedMotion, around: Surroundings) -> Iterator[CorrectedRow]:
         """Rows in which the robot stands until its offset is one that the motion can begin with."""
-        if self._around is None or self._fits(motion, around):
+        if self._around is None or self._now.as_planned:
+            return
+        if around.solver is not self._around.solver:
+            yield from self._rest()
+        if self._fits(motion, around):
             return
         yield from self._rest()
         first, limits = motion.rows[0], around.limits
@@ -181,7 +204,7 @@ class Corrector:
         return self._pacer.locate(row.block.origin)
 
     def _cannot_keep(self, joint: int, limits: JointLimits, first: PlannedRow) -> Diagnostic:
-        robot = self._setup.kinematics.description
+        robot = self._pacer.setup.kinematics.description
         return report(
             "IRL584",
             self._place(first),
@@ -190,3 +213,13 @@ class Corrector:
             lower=joint_value(robot, joint, float(limits.position_lower[joint])),
             upper=joint_value(robot, joint, float(limits.position_upper[joint])),
         )
+
+
+def _with_tool(now: Corrected, around: Surroundings) -> Corrected:
+    """The same robot, at rest, with the tool that it has now and the correction that this one has."""
+    rotation, position = around.kinematics.tool_pose(now.row.q)
+    row = now.row._replace(rotation=rotation, position=position)
+    if now.as_planned:
+        return replace(now, row=row)
+    correction = correction_between(rotation, position, around.kinematics.tool_pose(now.q))
+    return replace(now, row=row, correction=around.of_task(correction), rate=np.zeros(SIZE))
