@@ -30,6 +30,7 @@ from irlx.pacing.inputs import InputFunction, Inputs
 from irlx.pacing.lookahead import Lookahead
 from irlx.pacing.notes import Notes
 from irlx.pacing.pacer import Pacer
+from irlx.pacing.resolution import EVERY_TICK, Resolution
 from irlx.pacing.situation import PacingSetup
 from irlx.program import Program, ProgramError, cell_path, load
 from irlx.promises import CONDITION, LONGEST_TICK, SHORTEST_TICK
@@ -132,12 +133,19 @@ def _loaded(path: PathLike, cell: PathLike | None) -> Program:
 class Execution:
     """One run in progress: a program's blocks, and the pacer that executes them."""
 
-    def __init__(self, job: Job) -> None:
+    def __init__(self, job: Job, resolution: Resolution = EVERY_TICK) -> None:
         self.job = job
         cell = job.cell
         dt = job.tick_ns / 1e9
         setup = PacingSetup(
-            kinematics_of(cell), cell.limits, cell.weights, cell.start, dt, (), job.max_slow, job.inputs
+            kinematics_of(cell),
+            cell.limits,
+            cell.weights,
+            cell.start,
+            dt,
+            max_slow=job.max_slow,
+            inputs=job.inputs,
+            resolution=resolution,
         )
         self.kinematics = setup.kinematics
         self._pacer = Pacer(setup, self._locate)

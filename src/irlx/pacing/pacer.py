@@ -174,12 +174,12 @@ class Pacer:
         if rows is None:
             return None
         self.q = rows.q[-1]
-        self.tick += len(rows)
+        self.tick += rows.ticks
         return replace(rows, limits=in_force.limits)
 
     def _wait(self, block: WaitBlock, place: Place) -> MotionRows | None:
         setup = self._setup
-        rows = waited(block, self.q, setup.dt, self.tick + 1, setup.kinematics, place)
+        rows = waited(block, self.q, setup.dt, self.tick + 1, setup.kinematics, place, setup.resolution)
         return self._moved(rows, self._situation.in_force())
 
     def _reconfigure(self, block: ReconfigureBlock) -> MotionRows | None:
@@ -187,8 +187,9 @@ class Pacer:
         in_force = situation.in_force()
         check_inside(self.q, self._robot, in_force.limits, place)
         konf = asked_posture(block.target, situation, in_force, place)
-        dt, model = self._setup.dt, situation.model(in_force)
-        found = reconfigured(model, block, self.q, konf, dt, self.tick + 1, place, self._qp)
+        setup, model = self._setup, situation.model(in_force)
+        first, fine = self.tick + 1, setup.resolution
+        found = reconfigured(model, block, self.q, konf, setup.dt, first, place, self._qp, fine)
         left = found.flow.remaining
         why = why_left(found.flow.end, left, found.held, self._robot)
         self.warnings += posture_left(left, why, self._robot, place)

@@ -128,7 +128,8 @@ def _path_motion(situation: Situation, plan: PlannedChain, term: PostureTerm, pl
             raise PacingError(slower_than_allowed(duration, plan.programmed.duration, longest, place))
         return ticks_of_move(duration, dt, place)
 
-    return PathMotion(plan, situation.q, term, dt, situation.tick + 1, ticks_of, setup.modifiers)
+    first, changes, fine = situation.tick + 1, setup.modifiers, setup.resolution
+    return PathMotion(plan, situation.q, term, dt, first, ticks_of, changes, fine)
 
 
 def _rows(situation: Situation, block: MoveBlock, plan: PlannedChain, paced: PacedPath) -> MotionRows:
@@ -159,6 +160,7 @@ def _rows(situation: Situation, block: MoveBlock, plan: PlannedChain, paced: Pac
             paced.slowings,
             situation.free,
         ),
+        span=paced.demands[-1].tick + 1 - situation.tick,
     )
 
 
