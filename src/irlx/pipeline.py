@@ -172,7 +172,7 @@ class Execution:
 
     def _carried_out(self) -> Iterator[Executed]:
         """What becomes of the blocks; the program runs ahead of them while its moves pass their targets."""
-        pacer, ahead = self._pacer, Lookahead(self._locate, self._pacer.notes)
+        ahead = Lookahead(self._locate, self._pacer.notes)
         source, reply = self._interpreted(), None
         while True:
             try:
@@ -186,9 +186,12 @@ class Execution:
             reply = None
             if isinstance(item, Question):
                 yield from self._all(ahead.before(item))
-                reply = pacer.answer(item)
+                reply = self._answer(item)
             else:
                 yield from self._all(ahead.take(item))
+
+    def _answer(self, question: Question) -> tuple[float, ...]:
+        return self._pacer.answer(question)
 
     def _all(self, groups: Sequence[tuple[Block, ...]]) -> Iterator[Executed]:
         for group in groups:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-__all__ = ["add_execution_options"]
+__all__ = ["add_execution_options", "add_plugin_option", "import_plugins"]
 
 
 def add_execution_options(parser: argparse.ArgumentParser) -> None:
@@ -18,3 +18,22 @@ def add_execution_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--inputs", metavar="CSV", help="what inputs say: lines of time in s, input, value (else the cell's)"
     )
+
+
+def add_plugin_option(parser: argparse.ArgumentParser) -> None:
+    """Add `--plugin`."""
+    parser.add_argument(
+        "--plugin",
+        action="append",
+        default=[],
+        metavar="M",
+        help="import a module or a .py file that registers criteria of your own; may be given several times",
+    )
+
+
+def import_plugins(names: list[str]) -> None:
+    """Import what `--plugin` names. Raises IrlxError, IRL009, for one that cannot be imported."""
+    for name in names:
+        from irlx.cli.plugin import import_plugin
+
+        import_plugin(name)

@@ -11,7 +11,7 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from irlx.cli.execution import add_execution_options
+from irlx.cli.execution import add_execution_options, add_plugin_option, import_plugins
 
 if TYPE_CHECKING:
     from irlx.diagnostics import Diagnostic
@@ -59,13 +59,7 @@ def add_parser(commands: Any) -> None:
         metavar="N",
         help="also tell what decided tick N: demand, bounds of every joint with their source, criteria",
     )
-    parser.add_argument(
-        "--plugin",
-        action="append",
-        default=[],
-        metavar="M",
-        help="import a module or a .py file that registers criteria of your own; may be given several times",
-    )
+    add_plugin_option(parser)
     parser.add_argument(
         "--write-data",
         action="store_true",
@@ -119,10 +113,7 @@ def _prepared(options: argparse.Namespace) -> tuple[Job, list[Path]]:
     from irlx.program import load
 
     try:
-        for name in options.plugin:
-            from irlx.cli.plugin import import_plugin
-
-            import_plugin(name)
+        import_plugins(options.plugin)
         # Before the numeric libraries are imported: a mistake in the text is told at once.
         program = load(options.program, options.cell)
         from irlx.pipeline import prepare

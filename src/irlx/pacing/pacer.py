@@ -29,6 +29,7 @@ from irlx.blocks import (
 )
 from irlx.diagnostics import Diagnostic, Place
 from irlx.pacing.answers import answer_of_posture
+from irlx.pacing.beyond import posture_beyond, ticks_beyond
 from irlx.pacing.executed import Executed
 from irlx.pacing.inputs import answer_of_inputs
 from irlx.pacing.joint_moves import move_joints
@@ -129,6 +130,16 @@ class Pacer:
             if motion.rest is not None:
                 waiting.insert(0, motion.rest)
                 begins = False
+
+    def stand_beyond(self, move: MoveBlock) -> None:
+        """Put the robot where it would stand behind a move that it cannot do, and the time with it.
+
+        For a dry run alone. Raises PacingError or MotionError where no posture is there; it stays then.
+        """
+        situation, place = self._situation, self._locate(move.origin)
+        end = posture_beyond(situation, move, situation.in_force(move.limits), place)
+        self.tick += ticks_beyond(situation, move, place)
+        self.q = end
 
     def execute(self, block: Block) -> MotionRows | None:
         """Execute one block; returns the rows of a move (None for a switch or a move of no length).

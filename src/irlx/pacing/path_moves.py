@@ -62,11 +62,11 @@ def _legs(situation: Situation, moves: Sequence[MoveBlock]) -> list[Leg]:
         told = posed(move, situation.kinematics, start, situation.q)
         check_targets(told, situation.kinematics, situation.q, situation.locate(move.origin))
         legs.append(Leg(told, situation.locate(move.origin)))
-        start = _end(told, start, legs[-1].place)
+        start = end_of_move(told, start, legs[-1].place)
     return legs
 
 
-def _end(move: MoveBlock, start: Pose, place: Place) -> Pose:
+def end_of_move(move: MoveBlock, start: Pose, place: Place) -> Pose:
     """Where a move ends that starts at a pose: a CIRCLE with ANGLE elsewhere than at its target."""
     if move.arc is None or move.arc.angle is None:
         return end_pose(move, start)
