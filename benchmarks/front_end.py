@@ -1,12 +1,12 @@
-"""Speed of the front end: lines/s of lexing, of parsing, of the whole analysis, and the time of a cold check.
+"""Speed of the front end: lines/s of lexing, parsing, analysis and formatter, and the time of a cold check.
 
     python benchmarks/front_end.py [--lines N] [--rounds N] [--json]
 
 The program is long and as people write them (`tests/support/long_programs.py`). The stages take turns
 within a round, so that a drift of the machine's speed meets all alike; best and median of the rounds are
 given. Lines/s count the time that the process computes; `parse` contains the lexing and the tree, `analysis`
-the types too, `with lints` all that `irlx check` does without a cell. The cold check is a
-process of its own, from start to end, on 1,000 lines.
+the types too, `with lints` all that `irlx check` does without a cell, `formatter` that it makes sure of its
+result. The cold check is a process of its own, from start to end, on 1,000 lines.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ from time import perf_counter, process_time
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests" / "support"))
 
 from irlx.language.analysis import analyse
+from irlx.language.format import format_source
 from irlx.language.lexing import lex
 from irlx.language.parser import parse
 from irlx.language.source import source_text
@@ -65,6 +66,7 @@ def main() -> None:
         "parse": lambda: parse(source),
         "analysis": lambda: analyse(source),
         "with lints": lambda: analyse(source, lints=True),
+        "formatter": lambda: format_source(source.text),
     }
     times: dict[str, list[float]] = {name: [] for name in stages}
     cold = []

@@ -14,7 +14,7 @@ from irlx.language.suppression import BY_MOTION, unused_finding, without_ignored
 from irlx.program import ProgramError, analyse_file
 
 if TYPE_CHECKING:
-    from irlx.pipeline import InputsGiven
+    from irlx.job import InputsGiven
 
 PathLike = str | os.PathLike[str]
 
@@ -28,12 +28,12 @@ def check(
 ) -> list[Diagnostic]:
     """All findings on a program, and on a cell file where one is given; raises nothing for its input.
 
-    Names of frames come from `cell`, or from the cell that a run would find; a `cell` that is given also
-    tells how many joints the robot has. With `motion` a program without errors is executed in a dry run, at
-    a coarse tick, in the cell that a run would take; `max_steps` and `inputs` are those of `irlx.run`.
-    Without `cell` and `motion` this loads neither numpy nor Pinocchio.
+    Names of frames and the number of joints come from `cell`, or from the cell that a run would find; of that
+    one nothing else is looked at. With `motion` a program without errors is executed in a dry run, at a
+    coarse tick, in the cell that a run would take; `max_steps` and `inputs` are those of `irlx.run`. Without
+    `cell` and `motion` this loads neither numpy nor Pinocchio.
     """
-    joints, of_cell = _cell_findings(cell) if cell is not None else ((), [])
+    joints, of_cell = _cell_findings(cell) if cell is not None else (None, [])
     try:
         analysis = analyse_file(program, cell, joints)
     except ProgramError as error:
@@ -62,7 +62,7 @@ def _motion_findings(
     """Findings of a dry run, and those on the cell that it took or did not find."""
     # Imported here: motion loads numpy, and most checks have none.
     from irlx.dry_run import dry_run
-    from irlx.pipeline import prepare
+    from irlx.job import prepare
 
     try:
         job = prepare(program, cell, max_steps=max_steps, inputs=inputs)

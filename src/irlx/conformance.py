@@ -1,9 +1,11 @@
 """Conformance cases: small programs, each in a folder of its own with what has to come of it.
 
-A case is a folder with `program.irl`, files that it needs (`*.dat`, `*.irl`, `cell.toml`), and one of
+A case is a folder with `program.irl`, files that it needs (`*.dat`, `*.irl`, `cell.toml`, files
+that it reads, `input.txt` for its standard input), and one of
 
 - `blocks.txt`: the program runs, and these are its function blocks as `irlx blocks` prints them;
-- `output.txt`: the program runs, and this is what it writes to its standard channel;
+- `output.txt`: the program runs, and this is what it writes to its standard channel, and behind that each
+  file that it writes: a line ``==> name <==``, then what is in it at the end;
 - `error.txt`: the program must fail, with these errors, one a line: ``line:column: CODE message``;
 - `check.txt`: the program is accepted, with these warnings in the same form, none where the file is
   empty; lints do not count.
@@ -17,10 +19,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from difflib import unified_diff
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from irlx.checking import check
 from irlx.diagnostics import Diagnostic, IrlxError
 from irlx.diagnostics.codes.lints import LINTS
+
+if TYPE_CHECKING:
+    from irlx.pipeline import Execution
 
 __all__ = ["Case", "Outcome", "expectation_text", "find_cases", "run_case", "update_case"]
 
@@ -123,7 +129,7 @@ def expectation_text(case: Case) -> str | None:
         raise IrlxError(errors)
     if case.expectation == "check.txt":
         return _text(_concise(case, findings))
-    return _text(_block_lines(case) if case.expectation == "blocks.txt" else _output_lines(case))
+    return _text(_block_lines(case)) if case.expectation == "blocks.txt" else _output(case)
 
 
 def _text(lines: list[str] | Iterator[str]) -> str:
@@ -156,17 +162,32 @@ def _failures_of_a_run(case: Case) -> list[Diagnostic]:
 def _block_lines(case: Case) -> Iterator[str]:
     # Imported here: cases that are only checked need no numeric library.
     from irlx.blocks.text import block_text
-    from irlx.pipeline import Execution, header_of, prepare
+    from irlx.job import header_of
 
-    job = prepare(case.folder / PROGRAM, case.cell)
-    units = header_of(job).joint_units
-    for block in Execution(job).blocks():
+    execution = _execution(case)
+    units = header_of(execution.job).joint_units
+    for block in execution.blocks():
         yield block_text(block, units)
 
 
-def _output_lines(case: Case) -> Iterator[str]:
-    from irlx.pipeline import run
+def _output(case: Case) -> str:
+    """What a program writes, to files as well; none of them is made."""
+    from irlx.interpreter.channels.memory_files import MemoryFiles
 
-    run(case.folder / PROGRAM, case.cell)
-    # No statement that writes is executed yet.
-    return iter(())
+    execution = _execution(case)
+    for _ in execution.blocks():
+        pass
+    text, files = execution.channels.output, execution.channels.files
+    written = files.written if isinstance(files, MemoryFiles) else {}
+    return text + "".join(
+        f"==> {name} <==\n{content.decode('utf-8', 'replace')}" for name, content in written.items()
+    )
+
+
+def _execution(case: Case) -> Execution:
+    from irlx.job import prepare
+    from irlx.pipeline import Execution
+
+    given = case.folder / "input.txt"
+    text = given.read_text(encoding="utf-8") if given.is_file() else None
+    return Execution(prepare(case.folder / PROGRAM, case.cell, input=text))

@@ -17,13 +17,14 @@ from irlx.blocks import (
     ReconfigureBlock,
 )
 from irlx.diagnostics import Diagnostic, IrlxError, Place, report
+from irlx.job import Job
 from irlx.pacing.beyond import needs_its_start
 from irlx.pacing.cautions import Caution, near_singular, slowed
 from irlx.pacing.errors import PacingError
 from irlx.pacing.executed import Executed
 from irlx.pacing.resolution import Resolution
 from irlx.pacing.slowdown.grid import Spacing
-from irlx.pipeline import Execution, Job
+from irlx.pipeline import Execution
 
 ROW_TIME = 0.04
 """Time that a row of a dry run stands for at least, s, but of a tick that is long itself `LEAST_TICKS`."""
@@ -57,6 +58,8 @@ class _DryExecution(Execution):
 
     def __init__(self, job: Job, resolution: Resolution) -> None:
         super().__init__(job, resolution)
+        # A check writes no file.
+        self.channels = job.channels.in_memory(None)
         self._errors: dict[tuple[str, Place | None], Diagnostic] = {}
         self._cautions: dict[tuple[str, Place], Caution] = {}
         self._failed: set[Origin] = set()

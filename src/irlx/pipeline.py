@@ -3,135 +3,47 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from math import inf
-from pathlib import Path, PurePath
-from typing import Any
+from collections.abc import Callable, Generator, Iterator, Sequence
+from contextlib import closing
+from dataclasses import replace
+from pathlib import PurePath
+from typing import IO
 
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx._version import __version__
-from irlx.blocks import Block, Origin, Question
-from irlx.cell.cell import Cell
-from irlx.cell.errors import CellError
-from irlx.cell.find import is_file
-from irlx.cell.input_file import read_input_file
-from irlx.cell.load import load_cell
+from irlx.blocks import AskPause, AskStandstill, Block, Origin, Question
 from irlx.cell.setting import setting_of
 from irlx.diagnostics import Diagnostic, IrlxError, Place, Span, report
-from irlx.diagnostics.diagnostic import near_matches
-from irlx.interpreter.interpret import MAX_STEPS, Interpretation
+from irlx.interpreter.channels.channels import Channels, Told
+from irlx.interpreter.channels.pieces import InputGiven
+from irlx.interpreter.interpret import Interpretation
+from irlx.job import InputsGiven, Job, PathLike, header_of, kinematics_of, prepare
 from irlx.pacing.executed import Executed
 from irlx.pacing.explanation import TickExplanation
 from irlx.pacing.explanation import explain_tick as explain_row
-from irlx.pacing.inputs import InputFunction, Inputs
 from irlx.pacing.lookahead import Lookahead
 from irlx.pacing.notes import Notes
 from irlx.pacing.pacer import Pacer
+from irlx.pacing.pauses import PauseAborted, PauseFunction
 from irlx.pacing.resolution import EVERY_TICK, Resolution
 from irlx.pacing.situation import PacingSetup
-from irlx.program import Program, ProgramError, cell_path, load
-from irlx.promises import CONDITION, LONGEST_TICK, SHORTEST_TICK
+from irlx.program import Program
 from irlx.report.recording import Recording
 from irlx.report.run import Run, RunError, RunInterrupted
-from irlx.robot.equality import Constraint, LinearConstraint
-from irlx.robot.kinematics import Kinematics
-from irlx.robot.registered_constraints import registered_constraints
 from irlx.streams.atomic import AtomicFile
-from irlx.streams.joint_stream import FORMAT_VERSION, StreamHeader
 from irlx.streams.sample import Sample
 
 Array = NDArray[np.float64]
-PathLike = str | os.PathLike[str]
-InputsGiven = InputFunction | Mapping[str, Sequence[tuple[float, float]]] | PathLike | None
-"""A function of name and time (s), traces by name (times in s with the value from each on), or a CSV file."""
-
 Progress = Callable[[Block, float], None]
 """Called after each block with the block and the simulated time so far, s."""
 
-LEAST_TICK_MS = SHORTEST_TICK * 1e3
-LONGEST_TICK_MS = LONGEST_TICK * 1e3
-
-
-@dataclass(frozen=True)
-class Job:
-    """A program and the cell it runs in, checked against each other; tick in ns.
-
-    A move may take `max_slow` times as long as programmed, the program may execute `max_steps` statements;
-    `inputs` are the cell's with those of the caller.
-    """
-
-    program: Program
-    cell: Cell
-    tick_ns: int
-    max_slow: float = inf
-    max_steps: int = MAX_STEPS
-    inputs: Inputs = field(default_factory=Inputs)
-
-
-def prepare(
-    program: Program | PathLike,
-    cell: PathLike | None = None,
-    tick_ms: float | None = None,
-    max_slow: float | None = None,
-    max_steps: int | None = None,
-    inputs: InputsGiven = None,
-) -> Job:
-    """Load what a run needs.
-
-    `cell` None: the file that SYSTEM SPECIFICATION names, else the program's own name with .toml.
-    Raises ProgramError, CellError, or IrlxError with IRL006 for a number out of range.
-    """
-    if not isinstance(program, Program):
-        program = _loaded(program, cell)
-    loaded = load_cell(cell_path(program, cell))
-    if max_slow is not None and not max_slow >= 1.0:
-        cause = "a move cannot be faster than programmed: at least 1"
-        raise IrlxError(report("IRL006", option="--max-slow", value=f"{max_slow:g}", cause=cause))
-    slowest = inf if max_slow is None else max_slow
-    said = inputs_of(loaded, inputs)
-    steps = MAX_STEPS if max_steps is None else max_steps
-    if steps < 1:
-        raise IrlxError(report("IRL006", option="--max-steps", value=f"{steps}", cause="at least 1"))
-    if tick_ms is None:
-        return Job(program, loaded, loaded.tick_ns, slowest, steps, said)
-    if not LEAST_TICK_MS <= tick_ms <= LONGEST_TICK_MS:
-        cause = f"a tick lasts {LEAST_TICK_MS:g} to {LONGEST_TICK_MS:g} ms"
-        raise IrlxError(report("IRL006", option="--tick", value=f"{tick_ms:g}", cause=cause))
-    return Job(program, loaded, round(tick_ms * 1e6), slowest, steps, said)
-
-
-def inputs_of(cell: Cell, given: InputsGiven) -> Inputs:
-    """What inputs say: first `given`, a function, traces by name or the path of a CSV; else the cell.
-
-    Raises CellError for a file that is no such CSV.
-    """
-    if callable(given):
-        return Inputs(cell.inputs, given)
-    if isinstance(given, str | os.PathLike):
-        return Inputs({**cell.inputs, **read_input_file(Path(given))})
-    own = {
-        name.casefold(): tuple((float(at), float(value)) for at, value in trace)
-        for name, trace in (given or {}).items()
-    }
-    return Inputs({**cell.inputs, **own})
-
-
-def _loaded(path: PathLike, cell: PathLike | None) -> Program:
-    """The program; where names are unknown and its cell is at fault, the cell's faults come first."""
-    try:
-        return load(path, cell)
-    except ProgramError as error:
-        likely = Path(cell) if cell is not None else Path(path).with_suffix(".toml")
-        if any(found.code == "IRL201" for found in error.diagnostics) and is_file(likely):
-            load_cell(likely)
-        raise
-
 
 class Execution:
-    """One run in progress: a program's blocks, and the pacer that executes them."""
+    """One run in progress: a program's blocks, and the pacer that executes them.
+
+    `channels` are what it reads and writes; `left_open` warns of files that were open at its end.
+    """
 
     def __init__(self, job: Job, resolution: Resolution = EVERY_TICK) -> None:
         self.job = job
@@ -151,11 +63,16 @@ class Execution:
         self._pacer = Pacer(setup, self._locate)
         texts = (job.program.source, *(module.source for module in job.program.modules))
         self._interpretation: Interpretation | None = None
+        self.left_open: list[Diagnostic] = []
+        self.channels = job.channels.on_disk()
         self._texts = {PurePath(text.name).name: text for text in texts}
 
     def __iter__(self) -> Iterator[Executed]:
         """Execute the program block by block. Raises IrlxError where it cannot go on (IRL090: by a fault)."""
-        source = self._carried_out()
+        with closing(self._carried_out()) as source:
+            yield from self._executed(source)
+
+    def _executed(self, source: Iterator[Executed]) -> Iterator[Executed]:
         while True:
             try:
                 executed = next(source)
@@ -163,6 +80,8 @@ class Execution:
                 return
             except IrlxError:
                 raise
+            except PauseAborted as aborted:
+                raise aborted.error from None
             except Exception as error:
                 if os.environ.get("IRLX_DEBUG"):
                     raise
@@ -170,50 +89,62 @@ class Execution:
                 raise IrlxError(report("IRL090", cause=f"{type(error).__name__}: {error}")) from error
             yield executed
 
-    def _carried_out(self) -> Iterator[Executed]:
+    def _carried_out(self) -> Generator[Executed, None, None]:
         """What becomes of the blocks; the program runs ahead of them while its moves pass their targets."""
         ahead = Lookahead(self._locate, self._pacer.notes)
-        source, reply = self._interpreted(), None
-        while True:
-            try:
-                item = source.send(reply)
-            except StopIteration:
-                yield from self._all(ahead.stop(None, "the program ends"))
-                return
-            except IrlxError:
-                yield from self._all(ahead.stop(None, "the program cannot go on"))
-                raise
-            reply = None
-            if isinstance(item, Question):
-                yield from self._all(ahead.before(item))
-                reply = self._answer(item)
-            else:
-                yield from self._all(ahead.take(item))
-
-    def _answer(self, question: Question) -> tuple[float, ...]:
-        return self._pacer.answer(question)
+        source, reply = self._interpreted(self.channels), None
+        with closing(source):
+            while True:
+                try:
+                    item = source.send(reply)
+                except StopIteration:
+                    yield from self._all(ahead.stop(None, "the program ends"))
+                    return
+                except IrlxError:
+                    yield from self._all(ahead.stop(None, "the program cannot go on"))
+                    raise
+                reply = None
+                if isinstance(item, Question):
+                    yield from self._all(ahead.before(item))
+                    reply = self._answer(item)
+                else:
+                    yield from self._all(ahead.take(item))
 
     def _all(self, groups: Sequence[tuple[Block, ...]]) -> Iterator[Executed]:
         for group in groups:
             yield from self._pacer.carry_out(group)
 
-    def blocks(self) -> Iterator[Block]:
-        """Blocks of the program; nothing moves until it asks for the posture that its moves lead to."""
+    def blocks(self, told: Told | None = None) -> Iterator[Block]:
+        """Blocks of the program; nothing moves until it asks for the posture that its moves lead to.
+
+        Files are written in memory only; `told` is called with what is written.
+        """
+        self.channels = self.job.channels.in_memory(told)
         waiting: list[Block] = []
-        source, reply = self._interpreted(), None
+        source, reply = self._interpreted(self.channels), None
         while True:
             try:
                 item = source.send(reply)
             except StopIteration:
                 return
             reply = None
-            if isinstance(item, Question):
+            if isinstance(item, AskPause | AskStandstill):
+                reply = self._answer(item)
+            elif isinstance(item, Question):
                 self._move_to_the_end_of(waiting)
                 waiting.clear()
-                reply = self._pacer.answer(item)
+                reply = self._answer(item)
             else:
                 yield item
                 waiting.append(item)
+
+    def _answer(self, question: Question) -> tuple[float, ...]:
+        """What the operator says to a pause, the machine to all else."""
+        if isinstance(question, AskPause):
+            return self.job.pauses.answer(question, self._locate)
+        if isinstance(question, AskStandstill):
+            return ()
+        return self._pacer.answer(question)
 
     def _move_to_the_end_of(self, blocks: Sequence[Block]) -> None:
         """Carry out blocks for their effect on where the robot stands."""
@@ -222,12 +153,28 @@ class Execution:
         for _ in self._all([*groups, *ahead.stop(None, "")]):
             pass
 
-    def _interpreted(self) -> Generator[Block | Question, tuple[float, ...] | None, None]:
-        """The program under way: its blocks and questions."""
+    def _interpreted(self, channels: Channels) -> Generator[Block | Question, tuple[float, ...] | None, None]:
+        """The program under way: its blocks and questions; then its files are closed."""
+        try:
+            yield from self._program(channels)
+            self.left_open = channels.finish()
+        finally:
+            channels.finish()
+        lost = [found for found in self.left_open if found.is_error]
+        if lost:
+            raise IrlxError(lost)
+
+    def _program(self, channels: Channels) -> Generator[Block | Question, tuple[float, ...] | None, None]:
         job, program = self.job, self.job.program
         setting = setting_of(job.cell)
         ready = Interpretation(
-            program.tree, program.source, setting, program.data_lists, program.modules, job.max_steps
+            program.tree,
+            program.source,
+            setting,
+            program.data_lists,
+            program.modules,
+            job.max_steps,
+            channels,
         )
         self._interpretation = ready
         return ready.run()
@@ -257,9 +204,9 @@ class Execution:
         if rows is None or not rows.first_tick <= tick < rows.first_tick + len(rows):
             return None
         cell = self.job.cell
-        limits = rows.limits or cell.limits
+        limits, setup = rows.limits or cell.limits, self._pacer.setup
         dt = self.job.tick_ns / 1e9
-        return explain_row(rows, before, tick, limits, cell.weights, self.kinematics, dt)
+        return explain_row(rows, before, tick, limits, setup.weights, setup.kinematics, dt)
 
     def recording(self) -> Recording:
         """A recording that begins at the cell's start posture."""
@@ -269,62 +216,13 @@ class Execution:
     @property
     def warnings(self) -> list[Diagnostic]:
         """Warnings of the blocks executed so far."""
-        return self._pacer.warnings
+        own = self._interpretation.warnings if self._interpretation is not None else []
+        left = (found for found in self.left_open if not found.is_error)
+        return [*own, *self._pacer.warnings, *left]
 
     def _locate(self, origin: Origin) -> Place:
         text = self._texts.get(origin.file, self.job.program.source)
         return Place.in_text(text, Span(origin.start, origin.end))
-
-
-def kinematics_of(cell: Cell) -> Kinematics:
-    """Kinematics of a cell's robot with its constraints.
-
-    Raises CellError: IRL617 for a constraint that nobody registered, IRL616 for one that the start breaks.
-    """
-    plain = Kinematics(cell.robot)
-    if not (cell.relations or cell.registered):
-        return plain
-    names = cell.robot.joint_names
-    found: list[Constraint] = [LinearConstraint(relation, names) for relation in cell.relations]
-    makers = registered_constraints()
-    for asked in cell.registered:
-        maker = makers.get(asked.use)
-        if maker is None:
-            known = ", ".join(sorted(makers)) or "none"
-            data: dict[str, Any] = {
-                "use": asked.use,
-                "near": near_matches(asked.use, sorted(makers)),
-                "known": known,
-            }
-            raise CellError(report("IRL617", asked.place, **data))
-        constraint = maker(plain)
-        broken = float(np.max(np.abs(constraint.residual(cell.start)), initial=0.0))
-        if not broken <= CONDITION:
-            told: dict[str, Any] = {"name": asked.name, "found": f"{broken:.6g}", "due": "0"}
-            raise CellError(report("IRL616", asked.place, **told))
-        found.append(constraint)
-    return plain.constrained(found)
-
-
-def header_of(job: Job) -> StreamHeader:
-    """Provenance of the stream of a job; names of files without their folders."""
-    program, cell = job.program, job.cell
-    return StreamHeader(
-        format_version=FORMAT_VERSION,
-        irlx_version=__version__,
-        program_name=program.path.name,
-        program_sha256=program.sha256,
-        cell_name=Path(cell.file).name,
-        robot_name=cell.robot.name,
-        robot_model=cell.model,
-        robot_fingerprint=cell.robot.fingerprint,
-        tip=cell.robot.tip,
-        joint_names=cell.robot.joint_names,
-        joint_units=tuple("m" if axis.is_prismatic else "rad" for axis in cell.robot.axes),
-        tick_ns=job.tick_ns,
-        limits=cell.limits,
-        weights=tuple(float(weight) for weight in cell.weights),
-    )
 
 
 def run(
@@ -337,18 +235,27 @@ def run(
     max_steps: int | None = None,
     inputs: InputsGiven = None,
     write_data: bool = False,
+    files: PathLike | None = None,
+    input: InputGiven = None,
+    output: IO[str] | None = None,
+    pause_s: float = 0.0,
 ) -> Run:
     """Interpret a program, move its robot, and return the joint stream.
 
     `cell`: path of the cell file, by default found beside the program; `tick_ms` overrides the
     cell's tick; `explain_tick` asks for `Run.explanation` of that tick; a move that limits make
     more than `max_slow` times as long as programmed is an error, and so are more than `max_steps`
-    statements (by default 10,000,000); `inputs` as `InputsGiven`, in place of the cell's. With `write_data`,
-    values of data lists that the program has changed are written to their files after a complete run.
+    statements (by default 10,000,000); `inputs` as `InputsGiven`, in place of the cell's; each PAUSE lasts
+    `pause_s` s, rounded up to whole ticks. With `write_data`, values of data lists that the program has
+    changed are written to their files after a complete run.
+    `files`: the folder that OPEN finds and makes files in, by default that of the program; `input`: what
+    STANDARD_IN reads, a text or a file that is open; `output`: what gets the text for STANDARD_OUT while it
+    is written, for instance sys.stdout, beside `Run.output`.
     Raises ProgramError and CellError before anything moves, RunError (with what was executed until then)
     once it does, RunInterrupted on Ctrl-C.
     """
-    job = prepare(program, cell, tick_ms, max_slow, max_steps, inputs)
+    channels = files, input, output
+    job = prepare(program, cell, tick_ms, max_slow, max_steps, inputs, *channels, pause_s)
     execution = Execution(job)
     finished = execute(execution, progress, explain_tick)
     if not write_data:
@@ -371,12 +278,13 @@ def execute(execution: Execution, progress: Progress | None = None, explain_tick
     except IrlxError as error:
         known = (*_warnings(job), *execution.warnings)
         partial = recording.finish(False, (*known, *error.diagnostics))
-        partial = replace(partial, explanation=explanation)
+        partial = replace(partial, explanation=explanation, output=execution.channels.output)
         raise RunError((*error.diagnostics, *known), partial) from error
     except KeyboardInterrupt as interrupt:
-        raise RunInterrupted(recording.finish(False, (*_warnings(job), *execution.warnings))) from interrupt
+        partial = recording.finish(False, (*_warnings(job), *execution.warnings))
+        raise RunInterrupted(replace(partial, output=execution.channels.output)) from interrupt
     finished = recording.finish(True, (*_warnings(job), *execution.warnings))
-    return replace(finished, explanation=explanation)
+    return replace(finished, explanation=explanation, output=execution.channels.output)
 
 
 def _warnings(job: Job) -> tuple[Diagnostic, ...]:
@@ -390,13 +298,22 @@ def stream(
     max_slow: float | None = None,
     max_steps: int | None = None,
     inputs: InputsGiven = None,
+    files: PathLike | None = None,
+    input: InputGiven = None,
+    output: IO[str] | None = None,
+    pause_s: float = 0.0,
+    on_pause: PauseFunction | None = None,
 ) -> Iterator[Sample]:
     """Samples of a run, one after another, motion by motion as they are asked for.
 
-    The same samples as `run` gives. Iteration may stop at any sample. What cannot be prepared raises
+    The same samples as `run` gives. Iteration may stop at any sample. At each PAUSE, all samples before it
+    handed out, `on_pause` is called with its place; the program goes on when it returns, after the time, s,
+    that it returns, or `pause_s` for None; what it raises comes out here. What cannot be prepared raises
     here, what goes wrong in motion at the sample it keeps from coming, as IrlxError.
     """
-    return _samples(prepare(program, cell, tick_ms, max_slow, max_steps, inputs))
+    channels = files, input, output
+    job = prepare(program, cell, tick_ms, max_slow, max_steps, inputs, *channels, pause_s, on_pause)
+    return _samples(job)
 
 
 def _samples(job: Job) -> Iterator[Sample]:

@@ -6,6 +6,7 @@ import hashlib
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 from irlx.cell.find import find_cell, is_file
@@ -13,7 +14,7 @@ from irlx.cell.frame_names import frame_names
 from irlx.diagnostics import Diagnostic, IrlxError, Place, SourceText, report
 from irlx.diagnostics.near_files import near_files
 from irlx.language import tree
-from irlx.language.analysis import Analysis, analyse
+from irlx.language.analysis import Analysis, CellJoints, CellNames, DataListResolver, analyse
 from irlx.language.data_lists import ImportedList
 from irlx.language.modules import ImportedModule, ModuleProblem
 from irlx.language.source import decode_source
@@ -116,12 +117,23 @@ def digest_of_all(program: str, lists: Sequence[DataListFile], modules: Sequence
     return hashlib.sha256(lines.encode("ascii")).hexdigest()
 
 
-def analyse_file(path: PathLike, cell: PathLike | None = None, joints: tuple[str, ...] = ()) -> Analysis:
+def names_around(path: PathLike) -> tuple[DataListResolver, CellNames]:
+    """What gives the data lists beside a file, and the names that the cell a run would find adds to it."""
+    file = Path(path)
+    return _ListFiles(file), lambda root: _found_names(file, root)
+
+
+def analyse_file(
+    path: PathLike, cell: PathLike | None = None, joints: tuple[str, ...] | None = None
+) -> Analysis:
     """Analysis of a program, module or data list file, with lints; `joints` are those of its robot, if known.
 
-    Raises ProgramError where the file cannot be read.
+    None: those of the cell that a run would find. Raises ProgramError where the file cannot be read.
     """
     file = Path(path)
+    if joints is None:
+        found = partial(_found_joints, file)
+        return _analysis(file, read_file(file), cell, _Beside(file), found, lints=True)
     return _analysis(file, read_file(file), cell, _Beside(file), joints, lints=True)
 
 
@@ -227,21 +239,15 @@ def _analysis(
     content: bytes,
     cell: PathLike | None,
     files: _Beside,
-    joints: tuple[str, ...] = (),
+    joints: tuple[str, ...] | CellJoints = (),
     *,
     lints: bool = False,
 ) -> Analysis:
     """Analysis of the bytes of a file. Raises ProgramError for bytes that are no text."""
 
     def cell_names(root: tree.Program | tree.Module) -> tuple[str, ...]:
-        files.names = found_names(root)
+        files.names = _found_names(path, root) if cell is None else frame_names(Path(cell))
         return files.names
-
-    def found_names(root: tree.Program | tree.Module) -> tuple[str, ...]:
-        if cell is not None:
-            return frame_names(Path(cell))
-        found = (candidate for candidate in _candidates(path, _specification(root)) if is_file(candidate))
-        return next((frame_names(candidate) for candidate in found), ())
 
     try:
         text = decode_source(str(path), content)
@@ -250,6 +256,27 @@ def _analysis(
         raise ProgramError(error.diagnostics) from error
     found = (*analysis.diagnostics, *files.findings)
     return replace(analysis, diagnostics=found, modules=tuple(files.modules))
+
+
+def _found_names(path: Path, root: tree.Program | tree.Module) -> tuple[str, ...]:
+    """Names of the frames of the cell that a run of this file would find."""
+    cell = _found_cell(path, root)
+    return () if cell is None else frame_names(cell)
+
+
+def _found_joints(path: Path, root: tree.Program | tree.Module) -> tuple[str, ...]:
+    """Names of the joints of the robot in the cell that a run of this file would find."""
+    cell = _found_cell(path, root)
+    if cell is None:
+        return ()
+    # Imported here: a program without a cell needs no reader of robots.
+    from irlx.cell.joint_names import joint_names
+
+    return joint_names(cell)
+
+
+def _found_cell(path: Path, root: tree.Program | tree.Module) -> Path | None:
+    return next(filter(is_file, _candidates(path, _specification(root))), None)
 
 
 def _why_no_program(analysis: Analysis) -> tuple[Diagnostic, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
@@ -12,13 +12,19 @@ from typing import TYPE_CHECKING
 from irlx.blocks import (
     AskInput,
     AskInputChange,
+    AskJointBounds,
+    AskLastMove,
     AskManipulability,
     AskNearestPosture,
+    AskPause,
     AskPose,
     AskPosture,
     AskPostureOf,
+    AskStandstill,
     Block,
     InputBlock,
+    PauseBlock,
+    ToolBlock,
     WaitBlock,
 )
 from irlx.cell.cell import Cell
@@ -28,6 +34,8 @@ from irlx.cell.named import robot_names
 from irlx.cell.schema import RobotSection
 from irlx.cell.setting import setting_of
 from irlx.diagnostics import IrlxError
+from irlx.interpreter.channels.channels import Channels
+from irlx.interpreter.channels.unanswered_files import UnansweredFiles
 from irlx.interpreter.interpret import MAX_STEPS, interpret
 from irlx.program import Program, cell_path, load
 from irlx.robot.description import RobotDescription
@@ -170,6 +178,11 @@ def _program_check(
     return Check("program", FAILED if findings else OK, detail="; ".join(findings) or unsaid)
 
 
+def _no_text() -> str:
+    """What a program read from files and STANDARD_IN: no stream tells."""
+    raise Unanswerable
+
+
 def _recorded(question: AskInput | AskInputChange, outline: Outline, done: int) -> tuple[float, ...]:
     """What the stream says of inputs, `done` of its blocks being behind: what was read, how long was waited.
 
@@ -183,11 +196,17 @@ def _recorded(question: AskInput | AskInputChange, outline: Outline, done: int) 
     raise Unanswerable
 
 
+def _pause(outline: Outline, done: int) -> float:
+    """Time that the stream says a PAUSE took; 0 where its next block is none, which differs anyway."""
+    block = outline.records[done].block if done < len(outline.records) else None
+    return block.duration if isinstance(block, PauseBlock) else 0.0
+
+
 def _replayed(program: Program, cell: Cell, outline: Outline, max_steps: int) -> Iterator[Block]:
     """Blocks of a program whose questions are answered by the stream: nothing moves."""
-    source = interpret(
-        program.tree, program.source, setting_of(cell), program.data_lists, program.modules, max_steps
-    )
+    channels = Channels(UnansweredFiles(_no_text), _no_text)
+    setting, parts = setting_of(cell), (program.data_lists, program.modules)
+    source = interpret(program.tree, program.source, setting, *parts, max_steps, channels)
     reply: tuple[float, ...] | None = None
     done = 0
     while True:
@@ -196,15 +215,19 @@ def _replayed(program: Program, cell: Cell, outline: Outline, max_steps: int) ->
         except StopIteration:
             return
         reply = None
-        if isinstance(item, AskPostureOf | AskNearestPosture):
-            # Which posture a pose has is for the machine to say, and no stream tells.
+        if isinstance(item, AskPostureOf | AskNearestPosture | AskLastMove | AskJointBounds):
+            # What only the machine can say, no stream tells.
             raise Unanswerable
         if isinstance(item, AskPosture):
             records = outline.records
             row = records[done].tick if done < len(records) else outline.rows - 1
             reply = outline.posture(row)
         elif isinstance(item, AskPose | AskManipulability):
-            reply = _of_posture(item, cell)
+            reply = _of_posture(item, cell, [record.block for record in outline.records[:done]])
+        elif isinstance(item, AskPause):
+            reply = (_pause(outline, done),)
+        elif isinstance(item, AskStandstill):
+            reply = ()
         elif isinstance(item, AskInput | AskInputChange):
             reply = _recorded(item, outline, done)
         else:
@@ -212,10 +235,16 @@ def _replayed(program: Program, cell: Cell, outline: Outline, max_steps: int) ->
             yield item
 
 
-def _of_posture(question: AskPose | AskManipulability, cell: Cell) -> tuple[float, ...]:
-    """What the robot's model says of a posture."""
+def _of_posture(
+    question: AskPose | AskManipulability, cell: Cell, done: Sequence[Block]
+) -> tuple[float, ...]:
+    """What the robot's model says of a posture, with the tool that the blocks before have given it."""
     # Imported here: few programs ask, and the model loads a library that verification does without.
     from irlx.pacing.answers import answer_of_posture
     from irlx.robot.kinematics import Kinematics
 
-    return answer_of_posture(question, Kinematics(cell.robot))
+    kinematics = Kinematics(cell.robot)
+    tool = next((block for block in reversed(done) if isinstance(block, ToolBlock)), None)
+    if tool is not None:
+        kinematics = kinematics.with_tool(tool.position, tool.orientation)
+    return answer_of_posture(question, kinematics)

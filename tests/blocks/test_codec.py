@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 
 from irlx.blocks import (
     ArcCourse,
+    Blend,
     Block,
     CriterionBlock,
     CriterionChoice,
@@ -14,6 +15,7 @@ from irlx.blocks import (
     CyclicBlock,
     FreezeBlock,
     HaltBlock,
+    JointIncrement,
     JointRange,
     JointTarget,
     LimitClause,
@@ -23,8 +25,13 @@ from irlx.blocks import (
     MoveBlock,
     MoveKind,
     Origin,
+    PathCourse,
+    PoseIncrement,
     PoseTarget,
+    Profile,
     ReconfigureBlock,
+    ToolBlock,
+    WeightsBlock,
 )
 from irlx.blocks.codec import BLOCK_TYPES, BlockFormError, block_from_plain, block_to_plain
 
@@ -34,14 +41,24 @@ origins = st.builds(Origin, st.text(), st.integers(0, 9), st.integers(9, 99), st
 ranges = st.builds(JointRange, vectors, vectors)
 kinds = st.sampled_from(LimitKind)
 common = {"id": st.integers(1, 99), "origin": origins, "robot": st.text(), "process": st.text()}
-laws = st.builds(MotionLaw, *[numbers] * 6, st.none() | numbers)
+laws = st.builds(
+    MotionLaw,
+    *[numbers] * 6,
+    st.none() | numbers,
+    st.sampled_from(Profile),
+    st.none() | numbers,
+    numbers,
+)
+places, turns = st.tuples(numbers, numbers, numbers), st.tuples(numbers, numbers, numbers, numbers)
 poses = st.builds(
     PoseTarget,
     st.tuples(numbers, numbers, numbers),
     st.none() | st.tuples(numbers, numbers, numbers, numbers),
     st.text(),
 )
-targets = poses | st.builds(JointTarget, vectors)
+increments = st.builds(PoseIncrement, places, st.none() | turns, st.text())
+joints = st.builds(JointTarget, vectors)
+targets = poses | joints | increments | st.builds(JointIncrement, vectors)
 criteria = st.builds(
     CriterionChoice,
     st.text(),
@@ -49,9 +66,16 @@ criteria = st.builds(
     st.lists(st.builds(CriterionParam, st.text(), numbers), max_size=2).map(tuple),
 )
 postures = st.none() | st.builds(JointTarget, vectors)
-courses = st.builds(ArcCourse, targets, st.none() | numbers, st.booleans(), postures)
+courses = st.builds(ArcCourse, targets, st.none() | numbers, st.booleans(), postures) | st.builds(
+    PathCourse,
+    st.lists(targets, max_size=3).map(tuple),
+    st.lists(joints, max_size=3).map(tuple),
+)
+blends = st.builds(Blend, st.none() | numbers, st.none() | numbers)
 blocks = st.one_of(
     st.builds(HaltBlock, **common),
+    st.builds(ToolBlock, position=places, orientation=turns, **common),
+    st.builds(WeightsBlock, weights=vectors, **common),
     st.builds(FreezeBlock, joints=st.lists(st.integers(1, 9)).map(tuple), **common),
     st.builds(CyclicBlock, active=st.booleans(), **common),
     st.builds(LimitSwitchBlock, kind=kinds, range=st.none() | ranges, **common),
@@ -66,6 +90,7 @@ blocks = st.one_of(
         course=st.none() | courses,
         reconfiguration=postures,
         criteria=st.lists(st.builds(CriterionClause, criteria, origins), max_size=2).map(tuple),
+        blend=st.none() | blends,
         **common,
     ),
 )

@@ -65,14 +65,18 @@ def test_json(command, folder):
 
 
 def test_json_of_a_run_that_ends_early(inside, folder, names):
-    text = (folder / "p.irl").read_text().replace("MOVE LIN home;", "MOVE_INC LIN home;")
+    text = (
+        (folder / "p.irl")
+        .read_text()
+        .replace("MOVE LIN home;", "MOVE LIN home WITH TOLERANCE (0, 0, 0, 0, 0, 9);")
+    )
     (folder / "p.irl").write_text(text)
     done = inside("run", "p.irl", "--json")
     found = json.loads(done.stdout)
     assert done.returncode == 1
     assert found["summary"]["complete"] is False
     assert [d["code"] for d in found["diagnostics"]] == ["IRL590"]
-    assert found["diagnostics"][0]["place"] == "p.irl:5:3"
+    assert found["diagnostics"][0]["place"] == "p.irl:5:17"
     assert names(folder) == ["p.irl", "p.partial.irdata", "p.toml"]
 
 
@@ -226,13 +230,39 @@ def test_a_reader_that_goes_away(folder, environment):
     assert (done.returncode, done.stderr) == (0, "")
 
 
+WATCH = """from pathlib import Path
+from irlx.pacing.pacer import Pacer
+carry_out = Pacer.carry_out
+def watched(pacer, group):
+    if group[0].id == 2:
+        Path("second").touch()
+    return carry_out(pacer, group)
+Pacer.carry_out = watched
+"""
+"""A plugin that tells when the second block begins."""
+
+
 @pytest.mark.req("QA-09")
 def test_interrupt(folder, environment, names):
+    """In the midst of the second move, however long it takes to get there; the first one is kept."""
+    (folder / "watch.py").write_text(WATCH)
     far = "MOVE LIN POSITION(10000, 1000, 3500) SPEED := 20;"
     text = (folder / "p.irl").read_text().replace("MOVE LIN home;", far)
     (folder / "p.irl").write_text(text)
     process = subprocess.Popen(
-        [sys.executable, "-m", "irlx", "run", "p.irl", "--tick", "0.25", "-o", "out.irdata"],
+        [
+            sys.executable,
+            "-m",
+            "irlx",
+            "run",
+            "p.irl",
+            "--tick",
+            "0.25",
+            "-o",
+            "out.irdata",
+            "--plugin",
+            "watch.py",
+        ],
         cwd=folder,
         env=environment,
         stdout=subprocess.PIPE,
@@ -241,21 +271,21 @@ def test_interrupt(folder, environment, names):
         # A shell starts its background jobs with interrupts ignored, and children inherit that.
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # noqa: PLW1509
     )
-    # Long enough to load everything and to finish the first move; the second takes much longer.
-    time.sleep(3.0)
-    assert process.poll() is None
+    end = time.monotonic() + 60.0
+    while not (folder / "second").exists() and process.poll() is None and time.monotonic() < end:
+        time.sleep(0.01)
+    assert process.poll() is None, process.communicate()
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=60)
     assert process.returncode == 130
     assert out == ""
     assert "Traceback" not in err
     assert err.startswith("irlx: interrupted\n")
-    left = set(names(folder)) - {"p.irl", "p.toml"}
-    assert left <= {"out.partial.irdata"}
-    if left:
-        stream = read_stream(folder / "out.partial.irdata")
-        assert not stream.complete
-        assert not stream.qd[-1].any()
+    assert set(names(folder)) - {"p.irl", "p.toml"} == {"out.partial.irdata", "second", "watch.py"}
+    stream = read_stream(folder / "out.partial.irdata")
+    assert not stream.complete
+    assert not stream.qd[-1].any()
+    assert set(stream.block) == {0, 1}
 
 
 @pytest.mark.req("STR-06")

@@ -113,9 +113,13 @@ def test_the_dialect_is_mended(inside, folder):
     (folder / "d.irl").write_text(text)
     assert "4 warnings" not in inside("check", "d.irl").stdout
     assert inside("fmt", "d.irl").returncode == 0
-    mended = "PROGRAM d;\nBEGIN\n  IF IN_1 = TRUE THEN\n    OUT_2 := TRUE;\n  ENDIF;\nENDPROGRAM\n"
+    mended = (
+        "PROGRAM d;\nVAR\n  INPUT BOOL: IN_1 AT 1;\n  OUTPUT BOOL: OUT_2 AT 2;\n"
+        "BEGIN\n  IF IN_1 = TRUE THEN\n    OUT_2 := TRUE;\n  ENDIF;\nENDPROGRAM\n"
+    )
     assert (folder / "d.irl").read_text() == mended
     assert "IRL10" not in inside("check", "d.irl").stderr
+    assert "IRL205" not in inside("check", "d.irl").stderr
 
 
 LIGHT = """

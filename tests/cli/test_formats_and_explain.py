@@ -11,7 +11,10 @@ import pytest
 import irlx
 from irlx.diagnostics import CATALOGUE
 
-BAD = "PROGRAM b;\nBEGIN\n  x := 1;\n  OUT_3 := TRUE;\n  WRITE(1);\nENDPROGRAM\n"
+BAD = (
+    "PROGRAM b;\nBEGIN\n  x := 1;\n  OUT_3 := TRUE;\n"
+    "  MOVE LIN POSITION(1, 2, 3) WITH TOLERANCE (0, 0, 0, 0, 0, 9);\nENDPROGRAM\n"
+)
 
 
 @pytest.mark.req("LANG-75")
@@ -104,5 +107,7 @@ def test_ignored_warnings_of_a_run(inside, folder):
 
 
 def test_findings_of_all_stages_come_in_the_order_of_the_text(tmp_path):
-    (tmp_path / "p.irl").write_text("PROGRAM p;\nBEGIN\n  WRITE(1);\n  x := 1;\n  WRITE(2);\nENDPROGRAM\n")
+    (tmp_path / "p.irl").write_text(
+        "PROGRAM p;\nBEGIN\n  OBSTACLE a;\n  x := 1;\n  OBSTACLEEND a;\nENDPROGRAM\n"
+    )
     assert [finding.code for finding in irlx.check(tmp_path / "p.irl")] == ["IRL591", "IRL201", "IRL591"]

@@ -85,7 +85,7 @@ def test_a_stream_codes_faults_of_irlx(files, monkeypatch):
     def broken(*_):
         raise np.linalg.LinAlgError("no")
 
-    monkeypatch.setattr("irlx.pacing.pacer.plan_path", broken)
+    monkeypatch.setattr("irlx.pacing.path_moves.plan_chain", broken)
     program = files("MOVE LIN POSITION(441, 200, 324);", ARM7)
     with pytest.raises(irlx.IrlxError, match="IRL090"):
         list(irlx.stream(program))

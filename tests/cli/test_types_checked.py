@@ -35,9 +35,9 @@ def test_a_run_does_not_begin(tmp_path):
 @pytest.mark.req("LANG-23")
 def test_a_cell_tells_the_number_of_joints(tmp_path):
     path = program(tmp_path, "VAR MAIN_JOINT: m := (1, 2, 3);", "MOVE PTP m;")
-    (tmp_path / "p.toml").write_text(CELL, encoding="utf-8")
+    (tmp_path / "other.toml").write_text(CELL, encoding="utf-8")
     assert [d.code for d in irlx.check(path)] == []
-    found = irlx.check(path, cell=tmp_path / "p.toml")
+    found = irlx.check(path, cell=tmp_path / "other.toml")
     assert [(d.code, d.message) for d in found] == [("IRL223", "MAIN_JOINT takes 7 values, found 3")]
 
 
@@ -67,3 +67,54 @@ def test_no_numeric_library_is_loaded(tmp_path):
         "assert not {'numpy', 'pinocchio', 'scipy'} & set(sys.modules), 'loaded'"
     )
     subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+
+
+JOINTS = "VAR MAIN_JOINT: m := (1, 2, 3);"
+
+
+@pytest.mark.req("LANG-10")
+@pytest.mark.parametrize("name", ["p.toml", "line_4.toml"])
+def test_the_cell_that_is_found_tells_the_number_of_joints(tmp_path, name):
+    """As --cell does: that of the program's own name, or that of SYSTEM SPECIFICATION before it."""
+    specification = "" if name == "p.toml" else "SYSTEM SPECIFICATION line_4;"
+    path = program(tmp_path, f"{specification} {JOINTS}", "MOVE PTP m;")
+    assert irlx.check(path) == []
+    (tmp_path / "p.toml").write_text(CELL.replace("arm7", "planar3"), encoding="utf-8")
+    (tmp_path / name).write_text(CELL, encoding="utf-8")
+    found = [str(one) for one in irlx.check(path)]
+    assert found == [str(one) for one in irlx.check(path, cell=tmp_path / name)]
+    assert ["7 values, found 3" in one for one in found] == [True]
+
+
+def test_a_found_cell_at_fault_is_left_to_the_run(tmp_path):
+    path = program(tmp_path, JOINTS, "MOVE PTP m;")
+    (tmp_path / "p.toml").write_text("[robot\n", encoding="utf-8")
+    assert irlx.check(path) == []
+
+
+@pytest.mark.req("LANG-76")
+@pytest.mark.parametrize("cell", ["", CELL])
+def test_a_found_cell_loads_no_numeric_library_either(tmp_path, cell):
+    path = program(tmp_path, JOINTS, "MOVE PTP m;")
+    if cell:
+        (tmp_path / "p.toml").write_text(cell, encoding="utf-8")
+    code = (
+        f"import irlx, sys; print(len(irlx.check({str(path)!r}))); "
+        "assert not {'numpy', 'pinocchio', 'scipy', 'pydantic'} & set(sys.modules), 'loaded'; "
+        "assert ('xml' in sys.modules) == " + str(bool(cell))
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], check=True, timeout=60, capture_output=True, text=True
+    )
+    assert done.stdout == f"{int(bool(cell))}\n"
+
+
+@pytest.mark.req("LANG-53")
+def test_notes_are_counted_for_themselves(tmp_path, capsys):
+    target = "ROBTARGET(POSE((1, 2, 3), ORIZYX(0, 0, 0)), 4)"
+    path = program(tmp_path, f"VAR ROBTARGET: t := {target};", "MOVE PTP t;")
+    (tmp_path / "p.toml").write_text(CELL, encoding="utf-8")
+    assert main(["check", str(path)]) == 0
+    told = capsys.readouterr()
+    assert told.out == f"{path}: 0 errors, 1 warning, 1 note\n"
+    assert "info IRL313: a ROBTARGET does not fix the posture of a robot with 7 joints" in told.err

@@ -96,14 +96,14 @@ def test_a_fault_of_irlx_in_a_run_keeps_what_was_executed(tmp_path, monkeypatch)
     (tmp_path / "p.toml").write_text('[robot]\nmodel = "koch11"\n')
     moves = "MOVE LIN (11400, 1000, 3500);\nMOVE LIN (11300, 1000, 3500);\n"
     (tmp_path / "p.irl").write_text(f"PROGRAM p;\nBEGIN\n{moves}ENDPROGRAM;\n")
-    execute = Pacer.execute
+    carry_out = Pacer.carry_out
 
-    def faulty(self, block):
-        if block.id == 2:
+    def faulty(self, group):
+        if group[0].id == 2:
             raise ArithmeticError("on purpose")
-        return execute(self, block)
+        return carry_out(self, group)
 
-    monkeypatch.setattr(Pacer, "execute", faulty)
+    monkeypatch.setattr(Pacer, "carry_out", faulty)
     with pytest.raises(irlx.RunError) as caught:
         irlx.run(tmp_path / "p.irl")
     assert caught.value.reason.code == "IRL090"

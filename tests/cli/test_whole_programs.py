@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import irlx
-from irlx.pipeline import Execution, prepare
+from irlx.job import prepare
+from irlx.pipeline import Execution
 
 pytestmark = [pytest.mark.req("LANG-11"), pytest.mark.req("LANG-40")]
 
@@ -252,3 +253,37 @@ def test_a_paused_program_survives_its_file(program, tmp_path):
     run.save(tmp_path / "out.irdata")
     assert ", 380, " in (tmp_path / "out.irdata").read_text(encoding="utf-8")
     assert irlx.verify(tmp_path / "out.irdata", tmp_path / "p.irl").passed
+
+
+@pytest.mark.req("LANG-53")
+def test_a_run_tells_of_a_status_that_counts_for_nothing(program):
+    """Once, at the first move to such a target, computed or not; without it nothing is told."""
+    text = """PROGRAM p;
+VAR ROBTARGET: t := ROBTARGET(FK(R_JOINT_ACT)); INT: i;
+BEGIN
+  FOR i := 0 TO 2 DO
+    t.STATUS := 4 * i;
+    MOVE LIN t;
+  ENDFOR;
+  MOVE PTP t;
+ENDPROGRAM
+"""
+    run = irlx.run(program(text))
+    (finding,) = run.diagnostics
+    assert (finding.code, finding.place.line, finding.data["status"]) == ("IRL312", 6, 4)
+    assert irlx.run(program(text.replace("4 * i", "0 * i"))).diagnostics == ()
+
+
+@pytest.mark.req("LANG-53")
+def test_a_robtarget_moves_as_its_pose_does(program):
+    """STATUS and TURNS are carried: the stream is that of the pose."""
+    text = """PROGRAM p;
+VAR POSE: q := FK(R_JOINT_ACT) + POSITION(-80, 20, 10); ROBTARGET: t; INT: i;
+BEGIN
+  t.PSE := q; t.STATUS := 3; FOR i := 1 TO 11 DO t.TURNS[i] := i; ENDFOR;
+  MOVE LIN {target};
+ENDPROGRAM
+"""
+    runs = [irlx.run(program(text.format(target=target))) for target in ("t", "q")]
+    np.testing.assert_array_equal(runs[0].q, runs[1].q)
+    assert [d.code for d in runs[0].diagnostics] == ["IRL312"]

@@ -11,12 +11,12 @@ from irlx.blocks import MoveBlock, SignalBlock
 
 HERE = Path(__file__).parent
 CELL = HERE / "cell.toml"
-MENDED = {"IRL103", "IRL104", "IRL105"}
-"""Forms that the formatter puts right; that a port is declared, nobody can know for the programmer."""
+MENDED = {"IRL103", "IRL104", "IRL105", "IRL205"}
+"""What the formatter puts right."""
 PROGRAMS = {
     "pick_and_place": {"IRL103": 2, "IRL104": 1, "IRL105": 9, "IRL205": 4},
     "nested": {"IRL103": 3, "IRL104": 6, "IRL105": 15, "IRL205": 4},
-    "contour": {"IRL105": 3, "IRL205": 1},
+    "contour": {"IRL105": 3, "IRL205": 1, "IRL313": 1},
 }
 
 pytestmark = pytest.mark.req("LANG-44")

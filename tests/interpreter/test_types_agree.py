@@ -108,10 +108,14 @@ WAYS = {
     "char": "'a' | k | l | s[1] | t[{int}] | texts[2][1] | CHR(70 + {int}) | ({char})",
     "position": """v | p.pos | e2.p | vs[1] | ({position} + {position}) | ({position} - {position})
     | ({position} * {real}) | ({int} * {position}) | ({position} / {real}) | ({pose} @ {position})
-    | ({orientation} * {position}) | POSITION({real}, {int}, {real})""",
+    | ({orientation} * {position}) | POSITION({real}, {int}, {real}) | ({position} + ({real}, {int}, 1.5))
+    | (({int}, {real}, 2) - {position}) | ({orientation} * (1, {real}, 2)) | ((1, 2, {real}) / {real})
+    | ({real} * ({int}, 5, 6)) | ({pose} @ (1, {int}, {real}))""",
     "orientation": """o | p.ori | ORIZYX({real}, {int}, 0) | ({orientation} @ {orientation})
     | INV({orientation}) | ORIVANG({position}, {real})""",
-    "pose": "p | POSE({position}, {orientation}) | ({pose} @ {pose}) | ({pose} + {position}) | INV({pose})",
+    "pose": """p | POSE({position}, {orientation}) | ({pose} @ {pose}) | ({pose} + {position}) | INV({pose})
+    | ({pose} - ({real}, 2, 3)) | (({position}, o) @ {pose}) | ({pose} @ ({position}, {orientation}))
+    | (({position}, {orientation}) + {position})""",
     "main_joint": "m",
     "one": "e1 | e3.a1",
     "two": "e2",

@@ -6,7 +6,7 @@ import pytest
 
 import irlx
 from irlx.language import format as formatter
-from irlx.language.format import format_source
+from irlx.language.format import format_source, ports, reading
 from irlx.language.parser import parse
 from irlx.language.source import source_text
 
@@ -254,7 +254,7 @@ def test_a_line_that_pushes_comments_beyond_the_margin_stands_apart():
     [
         ("IF a { why }\nx; ENDIF", ["IF a THEN  { why }", "  x;", "ENDIF;"]),
         ("WHILE a < b\nx; ENDWHILE;", ["WHILE a < b DO", "  x;", "ENDWHILE;"]),
-        ("OUT_3 = TRUE;", ["OUT_3 := TRUE;"]),
+        ("x = TRUE;", ["x := TRUE;"]),
         ("MOVE LIN p1 SPEED:=5 ACC:=2;", ["MOVE LIN p1 SPEED := 5, ACC := 2;"]),
         ("CYCLICSTART\nMOVE LIN p1;\nOBSTACLEEND w\nHALT { last }", None),
     ],
@@ -317,3 +317,28 @@ def test_a_formatter_that_spoils_something_gives_up(monkeypatch, spoil, what):
         format_source("PROGRAM t; BEGIN x := 1; { c } ENDPROGRAM")
     assert caught.value.reason.code == "IRL144"
     assert what in caught.value.reason.message
+
+
+@pytest.mark.req("LANG-74")
+@pytest.mark.parametrize(
+    ("text", "readings"),
+    [
+        ("PROGRAM p;\nBEGIN\nENDPROGRAM\n", 1),
+        ("program p;begin x:=1; endprogram", 2),
+        ("program p;begin x=1 endprogram", 3),
+        ("program p;begin OUT_1=1 endprogram", 5),
+    ],
+)
+def test_how_often_a_text_is_read(monkeypatch, text, readings):
+    """Reading is most of the time: once as it is, once formatted, once mended, twice for declared ports."""
+    read = []
+
+    def counted(source):
+        read.append(source.text)
+        return parse(source)
+
+    for module in (formatter, reading, ports):
+        monkeypatch.setattr(module, "parse", counted)
+    format_source(text)
+    assert len(read) == readings
+    assert len(set(read)) == readings

@@ -97,11 +97,14 @@ def test_type_and_variable_of_one_name_do_not_clash():
     assert codes("PROGRAM t; VAR POSE: pose; BEGIN MOVE LIN pose; ENDPROGRAM") == []
 
 
+@pytest.mark.req("LANG-64")
 @pytest.mark.req("LANG-67")
 @pytest.mark.parametrize(
     ("body", "found"),
     [
         ("OBSTACLE a; OBSTACLE b; OBSTACLEEND a; OBSTACLEEND B;", []),
+        ("OBSTACLE ściana_1; OBSTACLE wall; OBSTACLEEND wall; OBSTACLEEND ŚCIANA_1;", []),
+        ("OBSTACLE a; OBSTACLE b; OBSTACLE A; OBSTACLEEND b; OBSTACLEEND a;", ["IRL303"]),
         ("OBSTACLE a; OBSTACLEEND b;", ["IRL301", "IRL302"]),
         ("CYCLICSTART; IF TRUE THEN CYCLICEND; ENDIF;", []),
         ("off; CYCLICSTART; off;", []),

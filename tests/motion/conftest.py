@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from irlx.blocks import ArcCourse, MotionLaw, MoveBlock, MoveKind, Origin, PoseTarget
+from irlx.blocks import ArcCourse, Blend, MotionLaw, MoveBlock, MoveKind, Origin, PathCourse, PoseTarget
 from irlx.diagnostics import Place
+from irlx.motion.plan_chain import Leg
 
 
 def multiply(a: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -69,6 +70,24 @@ class Kit:
         origin = Origin("line.irl", 0, 8, 1)
         data = {"target": points[1], "law": law or Kit.law(), "course": ArcCourse(points[0], **course)}
         return MoveBlock(id=1, origin=origin, kind=MoveKind.CIRCLE, **data)
+
+    @staticmethod
+    def leg(block: MoveBlock, blend: Blend | None = None) -> Leg:
+        """A block as a leg that passes its target with a blend."""
+        return Leg(replace(block, blend=blend), Place("line.irl"))
+
+    @staticmethod
+    def path(kind: MoveKind, points, turns=None, law: MotionLaw | None = None) -> MoveBlock:
+        """LIN or SPLINE along a PATH; `turns` orientations (x, y, z, w) of all points, or None."""
+        turns = turns or [None] * len(points)
+        targets = [
+            PoseTarget(
+                tuple(float(c) for c in point), None if turn is None else tuple(float(c) for c in turn)
+            )
+            for point, turn in zip(points, turns, strict=True)
+        ]
+        data = {"target": targets[-1], "law": law or Kit.law(), "course": PathCourse(tuple(targets[:-1]))}
+        return MoveBlock(id=1, origin=Origin("line.irl", 0, 8, 1), kind=kind, **data)
 
     @staticmethod
     def quaternion(rng: np.random.Generator) -> np.ndarray:

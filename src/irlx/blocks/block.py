@@ -35,4 +35,6 @@ class HaltBlock(Block):
 
 @dataclass(frozen=True, kw_only=True)
 class PauseBlock(Block):
-    """The robot stands, and waits to be continued where somebody is there to do it."""
+    """The robot stands for `duration` s, rounded up to whole ticks, which is how long its answer took."""
+
+    duration: float = 0.0

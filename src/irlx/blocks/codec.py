@@ -82,20 +82,17 @@ def block_from_plain(plain: object) -> Block:
 def _fields_of(value: Any) -> dict[str, Any]:
     kind: Any = type(value)
     hints = _hints(kind)
-    return {
-        field.name: _encode(getattr(value, field.name), _is_choice(hints[field.name]))
-        for field in fields(value)
-    }
+    return {field.name: _encode(getattr(value, field.name), hints[field.name]) for field in fields(value)}
 
 
-def _encode(value: Any, tagged: bool) -> Any:
+def _encode(value: Any, hint: Any) -> Any:
     if is_dataclass(value):
-        tag = {"type": type(value).__name__} if tagged else {}
+        tag = {"type": type(value).__name__} if _is_choice(hint) else {}
         return {**tag, **_fields_of(value)}
     if isinstance(value, Enum):
         return value.value
     if isinstance(value, tuple):
-        return [_encode(item, False) for item in value]
+        return [_encode(item, part) for item, part in zip(value, _parts(hint, len(value)), strict=True)]
     # Values that came out of arrays print and serialise like any other number.
     if isinstance(value, float):
         return float(value)
@@ -122,6 +119,12 @@ def _alternatives(hint: Any) -> tuple[Any, ...]:
 def _is_choice(hint: Any) -> bool:
     """Whether more than one dataclass may stand here, so that the plain form must name it."""
     return sum(is_dataclass(option) for option in _alternatives(hint)) > 1
+
+
+def _parts(hint: Any, count: int) -> tuple[Any, ...]:
+    """Hints of the items of a tuple."""
+    items = next(get_args(option) for option in _alternatives(hint) if get_origin(option) is tuple)
+    return items[:1] * count if len(items) == 2 and items[1] is Ellipsis else items
 
 
 def _dataclass_from(kind: Any, plain: object, where: str) -> Any:

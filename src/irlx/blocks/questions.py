@@ -64,6 +64,27 @@ class AskManipulability:
 
 
 @dataclass(frozen=True)
+class AskLastMove:
+    """How long did the last MOVE take, and where on it does the tool stand, all blocks so far executed?
+
+    Answer: duration, s; length of the path behind the tool and of that before it, m. All are 0 before the
+    first MOVE.
+    """
+
+    origin: Origin
+
+
+@dataclass(frozen=True)
+class AskJointBounds:
+    """Between which values may each joint move now, by the robot and by the limits in force?
+
+    Answer: all lower bounds, then all upper ones, rad or m, infinite where there is none.
+    """
+
+    origin: Origin
+
+
+@dataclass(frozen=True)
 class AskInput:
     """What does this input say, all blocks so far executed? Answer: one number, 0 or 1 for a BOOL.
 
@@ -87,6 +108,32 @@ class AskInputChange:
     inputs: tuple[tuple[str, ...], ...]
 
 
-Question = (
-    AskPosture | AskPostureOf | AskNearestPosture | AskPose | AskManipulability | AskInput | AskInputChange
+@dataclass(frozen=True)
+class AskPause:
+    """How long does this PAUSE last, all blocks so far executed? Answer: one number, s, 0 or more."""
+
+    origin: Origin
+
+
+@dataclass(frozen=True)
+class AskStandstill:
+    """Has everything so far been carried out, the robot at rest? Answer: nothing at all, once it has."""
+
+    origin: Origin
+
+
+MachineQuestion = (
+    AskPosture
+    | AskPostureOf
+    | AskNearestPosture
+    | AskPose
+    | AskManipulability
+    | AskLastMove
+    | AskJointBounds
+    | AskInput
+    | AskInputChange
 )
+"""What robot and inputs answer."""
+
+Question = MachineQuestion | AskPause | AskStandstill
+"""What machine or operator answer."""

@@ -54,7 +54,7 @@ def _(block: HaltBlock, joint_units: Sequence[str]) -> str:
 
 @_words.register
 def _(block: PauseBlock, joint_units: Sequence[str]) -> str:
-    return "PAUSE"
+    return f"PAUSE {number(block.duration)} s" if block.duration else "PAUSE"
 
 
 @_words.register
@@ -101,6 +101,7 @@ def _(block: WeightsBlock, joint_units: Sequence[str]) -> str:
 @_words.register
 def _(block: ReconfigureBlock, joint_units: Sequence[str]) -> str:
     law = f"speed {_mm(block.law.speed)} mm/s speed_ori {_deg(block.law.speed_ori)} deg/s"
+    law += _override(block.law)
     return f"RECONFIGURATION to {_target(block.target, joint_units)} {law}"
 
 
@@ -187,9 +188,11 @@ def _law(kind: MoveKind, law: MotionLaw) -> str:
         parts.append(f"profile {law.profile.value}")
     if law.jerk is not None:
         parts.append(f"jerk {_mm(law.jerk)} mm/s3")
-    if law.override != 1.0:
-        parts.append(f"override {number(law.override * 100)} %")
-    return " ".join(parts)
+    return " ".join(parts) + _override(law)
+
+
+def _override(law: MotionLaw) -> str:
+    return "" if law.override == 1.0 else f" override {number(law.override * 100)} %"
 
 
 def _blend(kind: MoveKind, blend: Blend) -> str:

@@ -51,9 +51,7 @@ def build_cell(content: CellFile, robot_section: RobotSection, robot: RobotDescr
         np.array(weights),
         q,
         round(motion.tick_ms * 1e6),
-        MotionDefaults(
-            motion.speed, motion.acc, motion.speed_ori, motion.acc_ori, motion.speed_ptp, motion.acc_ptp
-        ),
+        MotionDefaults(**motion.model_dump(exclude={"tick_ms"})),
         {name: _frame(section) for name, section in content.frames.items()},
         _warnings(content, limits, file),
         *constraints,

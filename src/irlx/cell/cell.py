@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class MotionDefaults:
-    """Values the R_ variables start with, in program units: mm/s, mm/s2, deg/s, deg/s2, %."""
+    """Values the R_ variables start with, in program units: mm/s, mm/s2, deg/s, deg/s2, %, mm/s3, mm."""
 
     speed: float
     acc: float
@@ -26,6 +26,12 @@ class MotionDefaults:
     acc_ori: float
     speed_ptp: float
     acc_ptp: float
+    jerk: float = 0.0
+    c_cp: float = 0.0
+    c_ptp: float = 0.0
+    c_pass: bool = False
+    profile: str = "TRAPEZOID"
+    override: float = 100.0
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from irlx.language.builtins import SYSTEM_VARIABLES
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
 Percent = Annotated[float, Field(gt=0.0, le=100.0)]
 Coordinate = Literal["x", "y", "z", "rx", "ry", "rz"]
 Vector = Annotated[list[Number], Field(min_length=3, max_length=3)]
@@ -81,7 +82,7 @@ class RobotSection(Section):
 
 
 class MotionSection(Section):
-    """Defaults of the R_ variables: mm/s, mm/s2, deg/s, deg/s2, %; the tick in ms."""
+    """Defaults of the R_ variables: mm/s, mm/s2, deg/s, deg/s2, %, mm/s3, mm; the tick in ms."""
 
     tick_ms: Annotated[float, Field(ge=0.25, le=1000.0)] = 10.0
     speed: Positive = 250.0
@@ -90,6 +91,12 @@ class MotionSection(Section):
     acc_ori: Positive = 180.0
     speed_ptp: Percent = 100.0
     acc_ptp: Percent = 100.0
+    jerk: NotNegative = 0.0
+    c_cp: NotNegative = 0.0
+    c_ptp: Annotated[float, Field(ge=0.0, le=100.0)] = 0.0
+    c_pass: bool = False
+    profile: Literal["TRAPEZOID", "S_CURVE"] = "TRAPEZOID"
+    override: Percent = 100.0
 
 
 class FrameSection(Section):

@@ -5,22 +5,29 @@ from __future__ import annotations
 from unicodedata import normalize
 
 from irlx.cell.cell import Cell
-from irlx.interpreter.setting import Setting
+from irlx.interpreter.setting import Default, Setting
 
 
 def setting_of(cell: Cell) -> Setting:
-    """Joints, defaults of the system variables and named poses of a cell, in program units."""
+    """Joints, defaults of the system variables and named poses and weights of a cell, in program units."""
     motion = cell.motion
-    defaults = {
+    defaults: dict[str, Default] = {
         "R_SPEED": motion.speed,
         "R_ACC": motion.acc,
         "R_SPEED_ORI": motion.speed_ori,
         "R_ACC_ORI": motion.acc_ori,
         "R_SPEED_PTP": motion.speed_ptp,
         "R_ACC_PTP": motion.acc_ptp,
+        "R_JERK": motion.jerk,
+        "R_C_CP": motion.c_cp,
+        "R_C_PTP": motion.c_ptp,
+        "R_C_PASS": motion.c_pass,
+        "R_PROFILE": motion.profile,
+        "R_OVERRIDE": motion.override,
     }
     poses = {
         normalize("NFC", name): (frame.position, frame.quaternion) for name, frame in cell.frames.items()
     }
     axes = cell.robot.axes
-    return Setting(cell.robot.joint_names, tuple(axis.is_prismatic for axis in axes), defaults, poses)
+    slides, weights = tuple(axis.is_prismatic for axis in axes), tuple(map(float, cell.weights))
+    return Setting(cell.robot.joint_names, slides, defaults, poses, weights)

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import json
+import sys
 from typing import Any
 
-from irlx.cli.execution import add_execution_options
+from irlx.cli.execution import add_execution_options, standard_input
+from irlx.cli.output import encodable
 
 _EXAMPLE = "example:\n  irlx blocks programs/koch/square.irl\n"
 
@@ -26,14 +29,30 @@ def add_parser(commands: Any) -> None:
 
 
 def command(options: argparse.Namespace) -> int:
-    """Print one line a block on stdout."""
+    """Print one line a block, and one for each text that is written, on stdout; no file is written."""
     from irlx.blocks.text import block_text
     from irlx.cli.output import print_diagnostics
-    from irlx.pipeline import Execution, header_of, prepare
+    from irlx.job import header_of, prepare
+    from irlx.pipeline import Execution
 
-    job = prepare(options.program, options.cell, max_steps=options.max_steps, inputs=options.inputs)
+    job = prepare(
+        options.program,
+        options.cell,
+        max_steps=options.max_steps,
+        inputs=options.inputs,
+        files=options.files,
+        input=standard_input(),
+    )
     print_diagnostics(job.program.diagnostics)
     units = header_of(job).joint_units
-    for block in Execution(job).blocks():
+    execution = Execution(job)
+    for block in execution.blocks(_print_written):
         print(block_text(block, units))
+    print_diagnostics(execution.left_open)
     return 0
+
+
+def _print_written(name: str | None, text: str) -> None:
+    """A line for what the program writes, at the place where a run would write it."""
+    file = f"'{name}' " if name is not None else ""
+    print(encodable(f"  WRITE {file}{json.dumps(text, ensure_ascii=False)}", sys.stdout))

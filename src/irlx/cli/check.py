@@ -59,11 +59,14 @@ def command(options: argparse.Namespace) -> int:
 
 def _print_text(checked: list[tuple[str, list[Diagnostic]]]) -> None:
     from irlx.cli.output import encodable, print_diagnostics
+    from irlx.diagnostics import Severity
 
     for program, found in checked:
         print_diagnostics(found)
         errors = sum(diagnostic.is_error for diagnostic in found)
-        words = f"{program}: {_count(errors, 'error')}, {_count(len(found) - errors, 'warning')}"
+        notes = sum(diagnostic.severity is Severity.INFO for diagnostic in found)
+        words = f"{program}: {_count(errors, 'error')}, {_count(len(found) - errors - notes, 'warning')}"
+        words += f", {_count(notes, 'note')}" if notes else ""
         print(encodable(words, sys.stdout))
 
 

@@ -1,14 +1,16 @@
-"""Options of the commands that execute a program: how long it may go on, and what its inputs say."""
+"""Options of the commands that execute a program: how long it may go on, what its inputs say, its files."""
 
 from __future__ import annotations
 
 import argparse
+import sys
+from typing import IO
 
-__all__ = ["add_execution_options", "add_plugin_option", "import_plugins"]
+__all__ = ["add_execution_options", "add_plugin_option", "import_plugins", "standard_input"]
 
 
 def add_execution_options(parser: argparse.ArgumentParser) -> None:
-    """Add `--max-steps` and `--inputs`."""
+    """Add `--max-steps`, `--inputs` and `--files`."""
     parser.add_argument(
         "--max-steps",
         type=int,
@@ -17,6 +19,9 @@ def add_execution_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--inputs", metavar="CSV", help="what inputs say: lines of time in s, input, value (else the cell's)"
+    )
+    parser.add_argument(
+        "--files", metavar="DIR", help="folder in which OPEN finds and makes files (default: the program's)"
     )
 
 
@@ -37,3 +42,8 @@ def import_plugins(names: list[str]) -> None:
         from irlx.cli.plugin import import_plugin
 
         import_plugin(name)
+
+
+def standard_input() -> IO[bytes] | None:
+    """What STANDARD_IN reads on the command line."""
+    return None if sys.stdin is None else sys.stdin.buffer

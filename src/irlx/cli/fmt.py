@@ -54,11 +54,13 @@ def _format(name: str, options: argparse.Namespace) -> bool:
     from irlx.cli.output import encodable
     from irlx.language.format import format_source
     from irlx.language.source import decode_source
+    from irlx.program import names_around
 
     path, shown = Path(name), "<stdin>" if name == _STANDARD_INPUT else name
     content = sys.stdin.buffer.read() if name == _STANDARD_INPUT else _read(path)
     text = decode_source(shown, content).text
-    formatted = format_source(text, shown)
+    around = (None, None) if name == _STANDARD_INPUT else names_around(path)
+    formatted = format_source(text, shown, *around)
     new = formatted.encode("utf-8")
     changed = new != content
     if options.diff:

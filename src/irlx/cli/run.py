@@ -8,14 +8,16 @@ import os
 import sys
 from collections.abc import Iterable
 from contextlib import AbstractContextManager
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any, cast
 
-from irlx.cli.execution import add_execution_options, add_plugin_option, import_plugins
+from irlx.cli.execution import add_execution_options, add_plugin_option, import_plugins, standard_input
+from irlx.cli.program_text import ProgramText
 
 if TYPE_CHECKING:
     from irlx.diagnostics import Diagnostic
-    from irlx.pipeline import Job
+    from irlx.job import Job
     from irlx.report.run import Run
 
 _EXAMPLE = """\
@@ -52,6 +54,13 @@ def add_parser(commands: Any) -> None:
         metavar="F",
         help="end with IRL525 where limits make a move more than F times as long as programmed",
     )
+    parser.add_argument(
+        "--pause",
+        type=float,
+        default=0.0,
+        metavar="SEC",
+        help="stand for SEC s, rounded up to whole ticks, at each PAUSE (default: go on at once)",
+    )
     add_execution_options(parser)
     parser.add_argument(
         "--explain-tick",
@@ -75,25 +84,30 @@ def command(options: argparse.Namespace) -> int:
     """Run the program; exit code 1 where it ended in an error or the verification failed."""
     from irlx.cli.output import exit_code, print_diagnostics
 
-    job, outputs = _prepared(options)
+    text = ProgramText()
+    job, outputs = _prepared(options, text)
     from irlx.pipeline import Execution, execute
     from irlx.report.run import RunError, RunInterrupted
 
     execution = Execution(job)
     try:
         with _progress(options) as progress:
+            text.first = getattr(progress, "silence", None)
             run = execute(execution, progress, options.explain_tick)
     except RunError as error:
+        text.end_line()
         print_diagnostics(error.diagnostics)
         if not options.json:
             _print_tick(error.run, options)
         _keep_partial(error.run, outputs, options)
         return exit_code(error.diagnostics)
     except RunInterrupted as interrupt:
+        text.end_line()
         print("irlx: interrupted", file=sys.stderr)
         _keep_partial(interrupt.run, outputs, options)
         return 130
     if not options.quiet:
+        text.end_line()
         print_diagnostics(run.diagnostics)
     for path in outputs:
         run.save(path)
@@ -103,11 +117,13 @@ def command(options: argparse.Namespace) -> int:
     if options.write_data and not broken:
         # Behind the verification, which reads the lists as they were.
         print_diagnostics(execution.write_data())
+    if broken or options.explain_tick is not None:
+        text.end_line()
     _print_summary(run, outputs, reports, broken, options)
     return 1 if broken else 0
 
 
-def _prepared(options: argparse.Namespace) -> tuple[Job, list[Path]]:
+def _prepared(options: argparse.Namespace, text: ProgramText) -> tuple[Job, list[Path]]:
     """Job and files to write; what is wrong with them goes to stdout as well where JSON is asked for."""
     from irlx.diagnostics import IrlxError
     from irlx.program import load
@@ -116,17 +132,23 @@ def _prepared(options: argparse.Namespace) -> tuple[Job, list[Path]]:
         import_plugins(options.plugin)
         # Before the numeric libraries are imported: a mistake in the text is told at once.
         program = load(options.program, options.cell)
-        from irlx.pipeline import prepare
+        from irlx.job import prepare
 
         asked = options.tick, options.max_slow, options.max_steps, options.inputs
-        job = prepare(program, options.cell, *asked)
+        output = None if options.json else cast("IO[str]", text)
+        told = options.files, standard_input(), output
+        job = prepare(program, options.cell, *asked, *told, pause_s=options.pause)
         read = [*(found.path for found in program.data_lists), *(found.path for found in program.modules)]
         inputs = (program.path, Path(job.cell.file), *read)
         inputs += () if options.inputs is None else (Path(options.inputs),)
-        return job, output_paths(options.output, program.path, inputs)
+        outputs = output_paths(options.output, program.path, inputs)
+        channels = job.channels.protecting(_written(outputs), "a stream of this run")
+        if options.inputs is not None:
+            channels = channels.protecting((Path(options.inputs),), "the inputs of this run")
+        return replace(job, channels=channels), outputs
     except IrlxError as error:
         if options.json:
-            plain = {"summary": None, "diagnostics": _plain_diagnostics(error.diagnostics)}
+            plain = {"summary": None, "output": "", "diagnostics": _plain_diagnostics(error.diagnostics)}
             print(json.dumps(plain, indent=2))
         raise
 
@@ -167,6 +189,16 @@ def _progress(options: argparse.Namespace) -> AbstractContextManager[Any]:
     return LiveProgress()
 
 
+def _partial(path: Path) -> Path:
+    """Name of a stream that is not complete."""
+    return path.with_name(f"{path.stem}.partial{path.suffix}")
+
+
+def _written(outputs: list[Path]) -> tuple[Path, ...]:
+    """Every file that a run may write by itself."""
+    return (*outputs, *map(_partial, outputs))
+
+
 def _keep_partial(run: Run, outputs: list[Path], options: argparse.Namespace) -> None:
     """Write what was executed under names of its own: the asked names only ever hold complete streams."""
     from irlx.cli.output import encodable
@@ -178,12 +210,16 @@ def _keep_partial(run: Run, outputs: list[Path], options: argparse.Namespace) ->
             )
     if run.t.size > 1:
         for path in outputs:
-            partial = path.with_name(f"{path.stem}.partial{path.suffix}")
+            partial = _partial(path)
             run.save(partial)
             words = f"the stream up to the last stop ({run.t[-1]:.6g} s), marked incomplete: {partial}"
             print(encodable(f"irlx: {words}", sys.stderr), file=sys.stderr)
     if options.json:
-        plain = {"summary": run.summary.to_plain(), "diagnostics": _plain_diagnostics(run.diagnostics)}
+        plain = {
+            "summary": run.summary.to_plain(),
+            "output": run.output,
+            "diagnostics": _plain_diagnostics(run.diagnostics),
+        }
         print(json.dumps(plain, indent=2))
 
 
@@ -224,6 +260,7 @@ def _print_summary(
     if options.json:
         plain = {
             "summary": run.summary.to_plain(),
+            "output": run.output,
             "tick": run.explanation.to_plain() if run.explanation is not None else None,
             "files": [str(path) for path in outputs],
             "verified": {name: report.passed for name, report in reports.items()},

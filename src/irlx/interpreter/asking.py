@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from irlx.blocks import (
     AskInput,
+    AskJointBounds,
+    AskLastMove,
     AskManipulability,
     AskNearestPosture,
     AskPose,
@@ -17,25 +19,35 @@ from irlx.blocks import (
     Question,
     SignalKind,
 )
+from irlx.interpreter.base import Base
 from irlx.interpreter.code import Frame, Step
 from irlx.interpreter.compiled import Compiled, first_failing
 from irlx.interpreter.errors import fail
 from irlx.interpreter.joints import main_joints, si_values
 from irlx.interpreter.scope import Signal
 from irlx.interpreter.targets import origin_of, pose_of_answer, pose_target
-from irlx.interpreter.types import POSE, POSITION, REAL, Record, Type
+from irlx.interpreter.types import POSE, POSITION, REAL, Record, Type, joint_bounds
 from irlx.interpreter.values import ArrayValue, RecordValue
 from irlx.language import tree
 
 if TYPE_CHECKING:
     from irlx.interpreter.expressions import Expressions
 
-ACTUAL = frozenset({"r_joint_act", "r_robtarget_act"})
-"""System variables that tell where the robot is, casefolded."""
+_OF_LAST_MOVE: dict[str, tuple[int, float]] = {
+    "r_move_time": (0, 1.0),
+    "r_distance_back": (1, 1e3),
+    "r_distance_forw": (2, 1e3),
+}
+"""System variables on the last move: which part of the answer they are, and its unit in that of programs."""
+ACTUAL = frozenset({"r_joint_act", "r_robtarget_act", "r_jbd", *_OF_LAST_MOVE})
+"""System variables that tell where the robot is and what it may do, casefolded."""
 ASKING = frozenset({"posture", "fk", "ik", "manipulability"})
 """Functions that ask the machine, casefolded."""
 
 Answer = tuple[float, ...]
+
+UNBOUNDED = 1e30
+"""What R_JBD gives, in degrees or mm, for a joint without a bound: REAL holds no infinite numbers."""
 
 
 class Asking:
@@ -45,14 +57,18 @@ class Asking:
         self._expressions = expressions
 
     def actual(self, node: tree.Designator) -> Compiled:
-        """R_JOINT_ACT or R_ROBTARGET_ACT, or a part of it. Raises InterpreterError."""
-        context = self._expressions.context
-        type = self._type("joint" if node.base.key == "r_joint_act" else "robtarget")
+        """R_JOINT_ACT and its like, or a part of it. Raises InterpreterError."""
+        context, key = self._expressions.context, node.base.key
+        if key in _OF_LAST_MOVE:
+            return self._of_last_move(node, *_OF_LAST_MOVE[key])
+        if key == "r_jbd":
+            return self._bounds(node)
+        type = self._type("joint" if key == "r_joint_act" else "robtarget")
         way = self._expressions.designators.way(node, type)
         self._machine_for(node.base)
         asked = AskPosture(origin_of(context.source, node))
         posture = self._ask(node, lambda _: asked, lambda answer: answer)
-        if node.base.key == "r_joint_act":
+        if key == "r_joint_act":
             main = self._type("main_joint")
             (empty,) = context.rest["JOINT"]
 
@@ -62,11 +78,36 @@ class Asking:
             return self._expressions.designators.part(node, joint, way)
         return self._expressions.designators.part(node, self._robtarget(node, type, posture), way)
 
+    def _of_last_move(self, node: tree.Designator, part: int, unit: float) -> Compiled:
+        """R_MOVE_TIME, R_DISTANCE_BACK and R_DISTANCE_FORW."""
+        way = self._expressions.designators.way(node, REAL)
+        self._machine_for(node.base)
+        asked = AskLastMove(origin_of(self._expressions.source, node))
+        value = self._ask(node, lambda _: asked, lambda answer: answer[part] * unit)
+        return self._expressions.designators.part(node, value, way)
+
+    def _bounds(self, node: tree.Designator) -> Compiled:
+        """R_JBD: the bounds of all joints."""
+        context = self._expressions.context
+        lower, upper = self._type("main_joint_min"), self._type("main_joint_max")
+        type = joint_bounds({"main_joint_min": lower, "main_joint_max": upper})
+        way = self._expressions.designators.way(node, type)
+        self._machine_for(node.base)
+        asked = AskJointBounds(origin_of(context.source, node))
+
+        def bounds(answer: Answer) -> RecordValue:
+            half = len(answer) // 2
+            sides = ((lower, answer[:half]), (upper, answer[half:]))
+            found = (main_joints(side, values, context.setting) for side, values in sides)
+            return RecordValue(type, tuple(map(_bounded, found)))
+
+        return self._expressions.designators.part(node, self._ask(node, lambda _: asked, bounds), way)
+
     def _robtarget(self, node: tree.Node, type: Record, posture: Callable[[Frame], Answer]) -> Any:
         """The target that the tool is at: pose and turns of the posture; nothing is known of its status."""
         context = self._expressions.context
         origin, slides = origin_of(context.source, node), context.setting.prismatic
-        pose = self._ask(node, lambda frame: AskPose(origin, posture(frame)), pose_of_answer)
+        pose = self._ask(node, lambda frame: AskPose(origin, posture(frame)), self._pose(node))
         _, turns, empty = context.rest["ROBTARGET"]
         if not isinstance(turns, ArrayValue):
             raise TypeError("turns come in an array")
@@ -127,10 +168,11 @@ class Asking:
     def _posture(self, node: tree.Node, runs: Sequence[Callable[[Frame], Any]], main: Record) -> Compiled:
         """POSTURE and IK: a posture of a pose."""
         context = self._expressions.context
+        base = Base(context, node)
         origin, setting = origin_of(context.source, node), context.setting
 
         def question(frame: Frame) -> Question:
-            target = pose_target(runs[0](frame))
+            target = pose_target(runs[0](frame), base)
             if len(runs) == 1:
                 return AskPostureOf(origin, target.position, target.orientation)
             near = si_values(runs[1](frame), setting)
@@ -149,7 +191,7 @@ class Asking:
             return kind(origin, si_values(run(frame), setting))
 
         if key == "fk":
-            return Compiled(POSE, self._ask(node, question, pose_of_answer))
+            return Compiled(POSE, self._ask(node, question, self._pose(node)))
         return Compiled(REAL, self._ask(node, question, lambda answer: answer[0]))
 
     # ---- steps
@@ -183,8 +225,18 @@ class Asking:
         assembler.add(node, make)
         return lambda frame: frame[slot]
 
+    def _pose(self, node: tree.Node) -> Callable[[Answer], RecordValue]:
+        """What gives the POSE of an answer as the program has it."""
+        base = Base(self._expressions.context, node)
+        return lambda answer: pose_of_answer(answer, base)
+
     def _type(self, key: str) -> Record:
         found: Type | None = self._expressions.scope.type(key)
         if not isinstance(found, Record):
             raise TypeError("joint types are records")
         return found
+
+
+def _bounded(side: RecordValue) -> RecordValue:
+    """Bounds without infinite numbers."""
+    return RecordValue(side.type, tuple(max(-UNBOUNDED, min(UNBOUNDED, real)) for real in side.reals()))

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from irlx.diagnostics import SourceText
+from irlx.interpreter.channels.channels import Channels
 from irlx.interpreter.code import Assembler
 from irlx.interpreter.machine import Machine
 from irlx.interpreter.scope import Scope
@@ -26,6 +27,7 @@ class Context:
     machine: Machine
     assembler: Assembler | None = None
     rest: Mapping[str, tuple[Value, ...]] = field(default_factory=dict)
+    channels: Channels = field(default_factory=Channels)
 
     def mark(self) -> tuple[int, int]:
         """What `undo` needs to forget the steps that are added from here on."""

@@ -17,7 +17,7 @@ from irlx.interpreter.signals import declared_signals
 from irlx.interpreter.statements import Statements
 from irlx.interpreter.support import EXECUTED_DECLARATIONS, part_name
 from irlx.interpreter.type_forms import TypeForms
-from irlx.interpreter.types import JOINT_RECORDS
+from irlx.interpreter.types import FILE, JOINT_RECORDS
 from irlx.interpreter.values import unset_value
 from irlx.interpreter.world import World
 from irlx.language import tree
@@ -49,7 +49,9 @@ class Unit:
         # Programs may define the joint types themselves; the other predefined types mean one thing.
         fixed = frozenset(self.scope.types) - frozenset(JOINT_RECORDS)
         self._world, self._source = world, source
-        self._constants = Context(source, self.scope, world.setting, world.machine, None, world.rest)
+        self._constants = Context(
+            source, self.scope, world.setting, world.machine, None, world.rest, world.channels
+        )
         self._types = TypeForms(self._constants, fixed)
         self.code = Code(source)
         self.assembler = Assembler(self.code)
@@ -74,6 +76,9 @@ class Unit:
         for part in root.declarations:
             if isinstance(part, tree.VarDeclaration):
                 self._add(part.type, part.variables, constant=False)
+        for part in root.declarations:
+            if isinstance(part, tree.StandardChannel):
+                self._bind(part)
         for routine, part in routines:
             compile_body(routine, part, self._constants)
 
@@ -89,6 +94,18 @@ class Unit:
                 self._add(part.type, part.constants, constant=True)
             elif not isinstance(part, EXECUTED_DECLARATIONS):
                 raise fail("IRL590", self._source, part.span, what=part_name(part))
+
+    def _bind(self, part: tree.StandardChannel) -> None:
+        """Put a variable of type FILE in the place of a standard channel. Raises InterpreterError, IRL222."""
+        found = self.scope.found(part.channel.key)
+        if found is None:
+            # KEYBOARD or SCREEN: the channels as they are.
+            return
+        if not isinstance(found, Variable) or found.type != FILE:
+            name = f"the variable {found.name}" if isinstance(found, Variable) else found.name
+            data = {"expected": "a variable of FILE", "found": name}
+            raise fail("IRL222", self._source, part.channel.span, **data)
+        self._world.channels.bound[part.direction] = found
 
     def finish(self, root: tree.Node, body: Sequence[tree.Statement]) -> Code:
         """Add statements behind the initial values, and make the code."""

@@ -12,7 +12,7 @@ from irlx.interpreter.code import Frame
 from irlx.interpreter.compiled import Compiled, Run
 from irlx.interpreter.conversion import count
 from irlx.interpreter.errors import InterpreterError, fail
-from irlx.interpreter.scope import Local, PartCell, Routine, Signal, SlotCell, Variable
+from irlx.interpreter.scope import Followed, Local, PartCell, Routine, Signal, SlotCell, Variable
 from irlx.interpreter.system_names import system_name
 from irlx.interpreter.types import CHAR, INT, STRING, Array, Record, Simple, Type
 from irlx.interpreter.values import UNSET, ArrayValue, has_arrays, is_set, replaced, share, unset_part
@@ -21,6 +21,8 @@ from irlx.language import tree
 if TYPE_CHECKING:
     from irlx.interpreter.expressions import Expressions
 
+FOLLOWED = "a system variable that the robot follows"
+"""What R_TOOL and R_WEIGHTS are for messages."""
 _NOT_CONSTANT = "a bound or constant that is not the same in every call"
 
 
@@ -141,13 +143,18 @@ class Designators:
     # ---- setting
 
     def setter(
-        self, node: tree.Designator, *, keep: bool = False
+        self, node: tree.Designator, *, keep: bool = False, followed: bool = False
     ) -> tuple[Type, Callable[[Frame, Any], None]]:
         """Type of a designator that may be set, and what sets it in a frame. Raises InterpreterError: IRL211.
+
+        What the robot follows is set by assignments alone, which pass `followed`; for others it is IRL249.
 
         With `keep` the place is found here and not when it is set: steps that follow may change an index.
         """
         stored, way = self._settable(node)
+        if isinstance(stored, Followed) and not followed:
+            data = {"where": "this statement", "found": FOLLOWED}
+            raise fail("IRL249", self._expressions.source, node.span, **data)
         if keep:
             kept = self._expressions.kept
             steps = (s if isinstance(s, int) else kept(node, Compiled(INT, s)).run for s in way.steps)
@@ -176,6 +183,8 @@ class Designators:
         if not isinstance(node, tree.Designator) or self.signal(node.base) is not None:
             raise fail("IRL249", self._expressions.source, node.span, where=where, found=_what(node))
         stored, way = self._settable(node)
+        if isinstance(stored, Followed):
+            raise fail("IRL249", self._expressions.source, node.span, where=where, found=FOLLOWED)
         whole = _cell(stored)
         if not way.steps:
             return Compiled(way.type, whole)

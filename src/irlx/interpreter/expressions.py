@@ -8,10 +8,20 @@ from functools import partial
 from irlx.diagnostics import SourceText
 from irlx.interpreter.asking import ACTUAL, ASKING, Asking
 from irlx.interpreter.calls import Calls
+from irlx.interpreter.channel_access import end_of_file
 from irlx.interpreter.code import Frame, Step
 from irlx.interpreter.compiled import Compiled, Run, constant, failing, first_failing, folded
 from irlx.interpreter.context import Context
-from irlx.interpreter.conversion import Where, assemble, count, fit, part_type, parts_needed, whole_number
+from irlx.interpreter.conversion import (
+    INT_LIMIT,
+    Where,
+    assemble,
+    count,
+    fit,
+    part_type,
+    parts_needed,
+    whole_number,
+)
 from irlx.interpreter.designators import Designators
 from irlx.interpreter.errors import InterpreterError, fail
 from irlx.interpreter.functions import Function
@@ -21,6 +31,8 @@ from irlx.interpreter.scope import Routine, Scope
 from irlx.interpreter.types import BOOL, INT, ORIENTATION, REAL, STRING, Array, Record, Type
 from irlx.interpreter.values import Value, has_arrays
 from irlx.language import tree
+from irlx.language.builtins import BARE_FUNCTIONS
+from irlx.language.checking.operators import aggregate_type, values_in_parentheses
 
 _LITERALS = (tree.IntLiteral, tree.RealLiteral, tree.BoolLiteral, tree.StringLiteral)
 
@@ -43,6 +55,8 @@ class Expressions:
         self._asking = Asking(self)
         self._calls = Calls(self)
         self._suspends: dict[int, bool] = {}
+        self._own_types: dict[int, Type | None] = {}
+        self._chosen: dict[tuple[int, tuple[str, ...]], list[Type]] = {}
 
     @property
     def source(self) -> SourceText:
@@ -118,8 +132,11 @@ class Expressions:
         if isinstance(node, tree.Designator):
             signal = self.designators.signal(node.base)
             reads = signal is not None and signal.is_input
-            return reads or node.base.key in ACTUAL or self.is_routine(node)
-        return self.is_routine(node) or (isinstance(node, tree.FunctionCall) and node.name.key in ASKING)
+            key = node.base.key
+            bare = key in BARE_FUNCTIONS and self.scope.found(key) is None
+            return reads or bare or key in ACTUAL or self.is_routine(node)
+        asks = isinstance(node, tree.FunctionCall) and (node.name.key in ASKING or node.name.key == "eof")
+        return asks or self.is_routine(node)
 
     def is_routine(self, node: tree.Node) -> bool:
         """Whether an expression is the call of a routine of the program."""
@@ -143,6 +160,8 @@ class Expressions:
                 return self._designated(node)
             case tree.FunctionCall():
                 return self._call(node.name, node.arguments, node)
+            case tree.Unary(op="-", operand=tree.IntLiteral(value=value)) if value == INT_LIMIT:
+                return constant(INT, -INT_LIMIT)
             case tree.Unary():
                 operand = self.value(node.operand)
                 return operand if operand.type is None else unary(node.op, operand, self.where(node))
@@ -159,14 +178,48 @@ class Expressions:
         if signal is not None and signal.is_input and not node.selectors:
             return self._asking.input(node, signal)
         found = self.scope.found(key)
-        if not node.selectors and (isinstance(found, Routine) or (found is None and key in FUNCTIONS)):
+        if not node.selectors and (
+            isinstance(found, Routine) or (found is None and (key in FUNCTIONS or key in BARE_FUNCTIONS))
+        ):
             return self._call(node.base, (), node)
         return self.designators.read(node)
 
     def _binary(self, node: tree.Binary) -> Compiled:
-        parts = [(side, partial(self.value, side)) for side in (node.left, node.right)]
-        left, right = self.operands(parts)
+        first: list[Compiled] = []
+        values = values_in_parentheses(node.left)
+        expected = None
+        if values and not values_in_parentheses(node.right):
+            other = self._own_type(node.right)
+            if other is None:
+                # What is wrong on the right keeps the left from being anything.
+                return self.value(node.right)
+            expected = aggregate_type(node.op, other, values, on_left=True)
+
+        def left_side() -> Compiled:
+            first.append(self.value(node.left, expected))
+            return first[0]
+
+        def right_side() -> Compiled:
+            values, known = values_in_parentheses(node.right), first[0].type
+            if not values or known is None:
+                return self.value(node.right)
+            return self.value(node.right, aggregate_type(node.op, known, values, on_left=False))
+
+        left, right = self.operands([(node.left, left_side), (node.right, right_side)])
         return first_failing((left, right)) or binary(node.op, left, right, self.where(node))
+
+    def _own_type(self, node: tree.Expression) -> Type | None:
+        """Type of an expression by itself; tried once, since attempts inside attempts would take for ever."""
+        if id(node) not in self._own_types:
+            self._own_types[id(node)] = self._tried(lambda: self.value(node)).type
+        return self._own_types[id(node)]
+
+    def _tried(self, compile: Callable[[], Compiled]) -> Compiled:
+        """What an attempt gives, its steps forgotten."""
+        mark = self.context.mark()
+        found = compile()
+        self.context.undo(mark)
+        return found
 
     def _logical(self, node: tree.Binary) -> Compiled:
         """AND and OR: the right side counts only where the left one does not tell."""
@@ -202,12 +255,7 @@ class Expressions:
             node = node.value
         if isinstance(node, tree.Aggregate):
             return None
-        mark = self.context.mark()
-        found = self.value(node)
-        if found.type == expected:
-            return found
-        self.context.undo(mark)
-        return None
+        return self.value(node) if self._own_type(node) == expected else None
 
     def assembled(
         self,
@@ -241,6 +289,8 @@ class Expressions:
             return self._calls.function(routine, arguments, node)
         if name.key in ASKING:
             return self._asking.call(name, arguments, node)
+        if name.key == "eof":
+            return end_of_file(self, arguments, node)
         function = FUNCTIONS.get(name.key)
         if function is not None:
             return self._built_in(function, arguments, node)
@@ -292,19 +342,8 @@ class Expressions:
                 return found
             data = {"expected": expected, "found": found.type.name}
             return failing(fail("IRL222", self.source, node.span, **data), (found,))
-        fitting: list[Type] = []
         alike = [type for type in candidates if parts_needed(type) == len(node.items)]
-        if len(alike) == 1:
-            return self.value(node, alike[0])
-        for type in alike:
-            mark = self.context.mark()
-            found = self.value(node, type)
-            self.context.undo(mark)
-            if found.error is None:
-                fitting.append(type)
-            elif found.error.reason.code not in ("IRL222", "IRL223"):
-                # The aggregate fits and is wrong inside: that is the message to give.
-                return found
+        fitting = alike if len(alike) == 1 else self._fitting(node, alike)
         if len(fitting) == 1:
             return self.value(node, fitting[0])
         if fitting:
@@ -312,6 +351,21 @@ class Expressions:
             return failing(fail("IRL229", self.source, node.span, candidates=names))
         data = {"expected": expected, "found": count(len(node.items), "value")}
         return failing(fail("IRL222", self.source, node.span, **data))
+
+    def _fitting(self, node: tree.Aggregate, alike: Sequence[Type]) -> list[Type]:
+        """Types that values in parentheses fit; one alone where they fit it and are wrong inside."""
+        key = id(node), tuple(type.name for type in alike)
+        if key not in self._chosen:
+            fitting: list[Type] = []
+            for type in alike:
+                error = self._tried(partial(self.value, node, type)).error
+                if error is None:
+                    fitting.append(type)
+                elif error.reason.code not in ("IRL222", "IRL223"):
+                    fitting = [type]
+                    break
+            self._chosen[key] = fitting
+        return self._chosen[key]
 
 
 def _one_part(type: Type | None) -> bool:

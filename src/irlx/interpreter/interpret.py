@@ -7,7 +7,8 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
-from irlx.diagnostics import SourceText
+from irlx.diagnostics import Diagnostic, SourceText
+from irlx.interpreter.channels.channels import Channels
 from irlx.interpreter.code import Code, Step
 from irlx.interpreter.declare import Unit
 from irlx.interpreter.list_text import Rewritten
@@ -30,7 +31,8 @@ class Interpretation:
     """A program that is ready to run: everything declared, every body compiled.
 
     `lists` are the data lists that it imports, `modules` all modules that it needs, each behind those that
-    it imports itself. Raises InterpreterError for declarations that are wrong.
+    it imports itself; `channels` what it reads and writes, by default memory. Raises InterpreterError for
+    declarations that are wrong.
     """
 
     def __init__(
@@ -41,9 +43,10 @@ class Interpretation:
         lists: Sequence[ImportedList] = (),
         modules: Sequence[ImportedModule] = (),
         max_steps: int = MAX_STEPS,
+        channels: Channels | None = None,
     ) -> None:
         self._machine = Machine(max_steps)
-        self._world = World(setting, self._machine)
+        self._world = World(setting, self._machine, channels)
         with _compiling():
             self._prepare(program, source, lists, modules)
 
@@ -82,6 +85,11 @@ class Interpretation:
         self._code.spans.append(self._code.spans[-1])
         return self._machine.run(self._code)
 
+    @property
+    def warnings(self) -> list[Diagnostic]:
+        """What the program did so far that deserves a look."""
+        return self._machine.warnings
+
     def rewritten(self, found: ImportedList) -> Rewritten:
         """Text of an imported data list with the values that its variables have now."""
         return self._world.rewritten(found)
@@ -111,9 +119,10 @@ def interpret(
     lists: Sequence[ImportedList] = (),
     modules: Sequence[ImportedModule] = (),
     max_steps: int = MAX_STEPS,
+    channels: Channels | None = None,
 ) -> Blocks:
     """Run a program; see `Interpretation`. It may execute `max_steps` statements (IRL510)."""
-    return Interpretation(program, source, setting, lists, modules, max_steps).run()
+    return Interpretation(program, source, setting, lists, modules, max_steps, channels).run()
 
 
 def declared_scope(

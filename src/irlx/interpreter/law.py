@@ -1,68 +1,46 @@
-"""The time law of a motion: parameters of its MOVE, and system variables for those that it does not give."""
+"""How a motion runs and ends: its time law, and how it passes its target, latched when the statement runs."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
+from collections.abc import Mapping, Sequence
 from math import radians
 from typing import Any
 
-from irlx.blocks import MotionLaw
-from irlx.interpreter.compiled import Compiled
+from irlx.blocks import Blend, MotionLaw, Profile
 from irlx.interpreter.expressions import Expressions
-from irlx.interpreter.parameters import positive, share
-from irlx.interpreter.scope import Variable
-from irlx.interpreter.support import MOVE_PARAMS
-from irlx.interpreter.types import REAL
+from irlx.interpreter.parameters import Parameters, not_negative, positive, share, word
+from irlx.interpreter.types import BOOL, REAL, STRING, Type
 from irlx.language import tree
 
-_LAW = ("speed", "acc", "speed_ori", "acc_ori", "speed_ptp", "acc_ptp", "time")
+_LAW: Mapping[str, Type] = {
+    **dict.fromkeys(("time", "speed", "acc", "speed_ori", "acc_ori", "speed_ptp", "acc_ptp"), REAL),
+    "jerk": REAL,
+    "override": REAL,
+    "profile": STRING,
+}
+_PASSING: Mapping[str, Type] = {"c_cp": REAL, "c_ptp": REAL, "c_pass": BOOL}
 
 
-def _given(node: tree.Move | tree.Reconfiguration) -> dict[str, tree.Expression]:
-    """Parameters of the time law in the order of their evaluation."""
-    params = node.params if isinstance(node, tree.Move) else ()
-    given = {param.name.key: param.value for param in params}
-    return {key: given[key] for key in ("time", *_LAW[:-1]) if key in given}
+class Law:
+    """Time law of a motion: parameters of its MOVE, and system variables for those that it does not give."""
 
+    def __init__(self, node: tree.Move | tree.Reconfiguration, expressions: Expressions) -> None:
+        self._given, self._source = Parameters(node, expressions, _LAW), expressions.source
+        self.parts = self._given.parts
+        """Expressions that `latched` needs the values of, in this order."""
 
-def law_parts(
-    node: tree.Move | tree.Reconfiguration, expressions: Expressions
-) -> list[tuple[tree.Node, Callable[[], Compiled]]]:
-    """Expressions that `law_of` needs the values of, in this order."""
-    return [(part, partial(expressions.value, part, REAL)) for part in _given(node).values()]
+    def latched(self, values: Sequence[Any]) -> MotionLaw:
+        """The law of the values of `parts`. Raises InterpreterError, IRL505, for values out of range."""
+        take, source = self._given.latched(values), self._source
 
+        def real(key: str) -> float:
+            return positive(take(key), source)
 
-def law_of(
-    node: tree.Move | tree.Reconfiguration, expressions: Expressions
-) -> Callable[[list[Any]], MotionLaw]:
-    """Time law of a motion from the values of `law_parts`.
+        def part(key: str) -> float:
+            real(key)
+            return share(take(key), source)
 
-    Raises InterpreterError, IRL505, for values out of range.
-    """
-    given, source = _given(node), expressions.source
-    defaults: dict[str, Variable] = {}
-    for param in _LAW[:-1]:
-        variable = expressions.scope.found(MOVE_PARAMS[param].casefold())
-        if not isinstance(variable, Variable):
-            raise TypeError("system variables are variables")
-        defaults[param] = variable
-
-    def law(values: list[Any]) -> MotionLaw:
-        numbers = dict(zip(given, values, strict=True))
-
-        def real(param: str) -> float:
-            if param in numbers:
-                return positive(param.upper(), numbers[param], given[param], source)
-            variable = defaults[param]
-            if not isinstance(variable.value, float):
-                raise TypeError("system variables are numbers")
-            return positive(variable.name, variable.value, node, source)
-
-        def part(param: str) -> float:
-            return share(param.upper(), real(param), given.get(param, node), source)
-
-        duration = positive("TIME", numbers["time"], given["time"], source) if "time" in numbers else None
+        jerk = not_negative(take("jerk"), source)
         return MotionLaw(
             speed=real("speed") * 1e-3,
             acc=real("acc") * 1e-3,
@@ -70,7 +48,34 @@ def law_of(
             acc_ori=radians(real("acc_ori")),
             speed_ptp=part("speed_ptp"),
             acc_ptp=part("acc_ptp"),
-            duration=duration,
+            duration=real("time") if self._given.gives("time") else None,
+            profile=Profile(word(take("profile"), [one.value for one in Profile], source)),
+            jerk=jerk * 1e-3 if jerk > 0.0 else None,
+            override=part("override"),
         )
 
-    return law
+
+class Passing:
+    """How a MOVE passes its target: C_CP, C_PTP and C_PASS, and their defaults."""
+
+    def __init__(self, node: tree.Move, expressions: Expressions) -> None:
+        self._given, self._source = Parameters(node, expressions, _PASSING), expressions.source
+        self._is_ptp = node.kind == "PTP"
+        self.parts = self._given.parts
+        """Expressions that `latched` needs the values of, in this order."""
+
+    def latched(self, values: Sequence[Any]) -> Blend | None:
+        """The blend of the values of `parts`; None where nothing asks for one, or C_PASS := FALSE forbids it.
+
+        Raises InterpreterError, IRL505, for values out of range.
+        """
+        take, source = self._given.latched(values), self._source
+        distance = not_negative(take("c_cp"), source) * 1e-3
+        not_negative(take("c_ptp"), source)
+        part, passes = share(take("c_ptp"), source), take("c_pass").value
+        if self._given.gives("c_pass") and not passes:
+            return None
+        amount = part if self._is_ptp else distance
+        if amount > 0.0:
+            return Blend(share=amount) if self._is_ptp else Blend(distance=amount)
+        return Blend() if passes else None

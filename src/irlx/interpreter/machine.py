@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator, Sequence
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from irlx.blocks import Block, Question
-from irlx.diagnostics import Span
+from irlx.diagnostics import Diagnostic, Place, SourceText, Span, report
 from irlx.interpreter.code import Code, Frame
 from irlx.interpreter.errors import fail
 from irlx.interpreter.values import Value
@@ -38,6 +38,12 @@ class Machine:
         self._taken: Callable[[tuple[float, ...]], None] = _nothing
         self._next = 0
         self._count = 0
+        self.warnings: list[Diagnostic] = []
+
+    def warn_once(self, code: str, source: SourceText, span: Span, **data: Any) -> None:
+        """Add a warning of a code, unless there is one."""
+        if not any(warning.code == code for warning in self.warnings):
+            self.warnings.append(report(code, Place.in_text(source, span), **data))
 
     def next_id(self) -> int:
         """Number of the next block, counted from 1."""

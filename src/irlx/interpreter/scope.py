@@ -22,6 +22,11 @@ class Variable:
     constant: bool = False
 
 
+@dataclass(slots=True)
+class Followed(Variable):
+    """A system variable that the robot follows: what changes it becomes a block."""
+
+
 @dataclass(slots=True, kw_only=True)
 class Signal(Variable):
     """A name of an input or output; the value of an output is what was set last."""

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from irlx.blocks import HaltBlock, PauseBlock, SignalBlock
+from irlx.blocks import HaltBlock, SignalBlock
 from irlx.interpreter.calls import Calls
 from irlx.interpreter.cases import add_case
+from irlx.interpreter.channel_statements import add_channel_call
 from irlx.interpreter.code import Frame, Label, Step
 from irlx.interpreter.compiled import Run, failing
 from irlx.interpreter.context import Context
@@ -16,11 +17,12 @@ from irlx.interpreter.expressions import Expressions
 from irlx.interpreter.loops import add_for
 from irlx.interpreter.machine import END
 from irlx.interpreter.motion import Motion
-from irlx.interpreter.scope import Routine, Signal
+from irlx.interpreter.robot_variables import add_change
+from irlx.interpreter.scope import Followed, Routine, Signal
 from irlx.interpreter.support import part_name
 from irlx.interpreter.targets import origin_of
 from irlx.interpreter.types import BOOL, Type
-from irlx.interpreter.waits import add_wait, add_wait_for
+from irlx.interpreter.waits import add_pause, add_wait, add_wait_for
 from irlx.language import tree
 from irlx.language.builtins import PROCEDURES
 
@@ -90,7 +92,11 @@ class Statements:
         if signal is not None and not signal.is_input and not node.target.selectors:
             self._set_output(signal, node)
             return
-        self.assign(node.target, node.value, node)
+        stored = self.context.scope.found(node.target.base.key)
+        if isinstance(stored, Followed):
+            add_change(self, node, stored)
+        else:
+            self.assign(node.target, node.value, node)
 
     def _set_output(self, signal: Signal, node: tree.Assignment) -> None:
         """Add the steps that set an output: its value is remembered, and becomes a block."""
@@ -128,15 +134,17 @@ class Statements:
         routine = self.context.scope.found(node.name.key)
         source = self.context.source
         if not isinstance(routine, Routine):
-            built_in = node.name.key in PROCEDURES
-            what = f"the procedure {node.name.name}"
-            if built_in or routine is None:
-                raise fail("IRL590", source, node.span, what=what)
+            if routine is None and node.name.key in PROCEDURES:
+                add_channel_call(self, node)
+                return
+            if routine is None:
+                raise fail("IRL590", source, node.span, what=f"the procedure {node.name.name}")
             found = f"the variable {routine.name}"
             raise fail("IRL222", source, node.span, expected="a procedure", found=found)
         arguments = [a for a in node.arguments if not isinstance(a, tree.FormattedValue)]
         if len(arguments) != len(node.arguments):
-            raise fail("IRL590", source, node.span, what="a value with a width")
+            data = {"expected": "a value without a layout", "found": "one with :width"}
+            raise fail("IRL222", source, node.span, **data)
         wrong = Calls(self.expressions).call(routine, arguments, node)
         if wrong is not None:
             self.run(node, wrong.run)
@@ -226,19 +234,13 @@ class Statements:
     # ---- rest
 
     def _halt(self, node: tree.Halt) -> None:
-        self._emit(node, HaltBlock)
-        self.assembler.add(node, lambda _: lambda _: END)
-
-    def _pause(self, node: tree.Pause) -> None:
-        self._emit(node, PauseBlock)
-
-    def _emit(self, node: tree.Node, kind: type[HaltBlock | PauseBlock]) -> None:
         machine, origin = self.context.machine, origin_of(self.context.source, node)
 
         def make(following: int) -> Step:
-            return lambda _: machine.emit((kind(id=machine.next_id(), origin=origin),), following)
+            return lambda _: machine.emit((HaltBlock(id=machine.next_id(), origin=origin),), following)
 
         self.assembler.add(node, make)
+        self.assembler.add(node, lambda _: lambda _: END)
 
 
 def _no_value(_: Frame) -> None:
@@ -258,7 +260,7 @@ _ADDERS: dict[type[tree.Node], Any] = {
     tree.While: Statements._while,
     tree.Repeat: Statements._repeat,
     tree.Halt: Statements._halt,
-    tree.Pause: Statements._pause,
+    tree.Pause: add_pause,
     tree.WaitTime: add_wait,
     tree.WaitFor: add_wait_for,
 }

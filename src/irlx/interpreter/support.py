@@ -7,11 +7,10 @@ from collections.abc import Iterator, Sequence
 from irlx.blocks.criterion import LIBRARY
 from irlx.diagnostics import Diagnostic, Place, SourceText, report
 from irlx.diagnostics.diagnostic import near_matches
-from irlx.interpreter.asking import ACTUAL, ASKING
+from irlx.interpreter.asking import ASKING
 from irlx.interpreter.parameters import criterion_name
 from irlx.interpreter.rotations import FUNCTIONS
-from irlx.interpreter.setting import SYSTEM_REALS
-from irlx.interpreter.system_names import LATER_TYPES, system_name
+from irlx.interpreter.system_names import LATER_TYPES
 from irlx.language import builtins, tree
 from irlx.language.data_lists import ImportedList
 from irlx.language.modules import ImportedModule
@@ -28,29 +27,14 @@ EXECUTED_DECLARATIONS = (
     tree.ProcedureDeclaration,
     tree.FunctionDeclaration,
     tree.SignalDeclaration,
+    tree.StandardChannel,
 )
 _CLAUSES = (tree.WithLimit, tree.WithReconfiguration, tree.WithCriterion)
-_EXECUTED_FUNCTIONS = frozenset({*FUNCTIONS, *ASKING, *builtins.TYPES}) - LATER_TYPES
+_EXECUTED_FUNCTIONS = frozenset({*FUNCTIONS, *ASKING, "eof", *builtins.TYPES}) - LATER_TYPES
 _READ_ONLY_FUNCTIONS = frozenset(builtins.FUNCTIONS) - _EXECUTED_FUNCTIONS
-_EXECUTED_NAMES = ACTUAL | {name.casefold() for name in SYSTEM_REALS}
-MOVE_PARAMS = {
-    "speed": "R_SPEED",
-    "acc": "R_ACC",
-    "speed_ori": "R_SPEED_ORI",
-    "acc_ori": "R_ACC_ORI",
-    "speed_ptp": "R_SPEED_PTP",
-    "acc_ptp": "R_ACC_PTP",
-    "time": "",
-    "angle": "",
-    "circ_ori": "",
-}
-"""Executed parameters of MOVE by casefolded name, and the system variable with their default, '' for none."""
-
-_READ_ONLY_PARAMS = builtins.MOVE_PARAMETERS.keys() - MOVE_PARAMS.keys()
 
 _NAMES: dict[type[tree.Node], str] = {
     tree.RobotBinding: "ROBOT",
-    tree.StandardChannel: "STANDARD_IN and STANDARD_OUT",
     tree.ObstacleStart: "OBSTACLE",
     tree.ObstacleEnd: "OBSTACLEEND",
     tree.WithTolerance: "WITH TOLERANCE",
@@ -65,15 +49,6 @@ def part_name(node: tree.Node) -> str:
 
 def missing_in_move(move: tree.Move) -> tuple[tree.Node, str] | None:
     """First part of a MOVE that is not executed, and its name, or None."""
-    if move.incremental:
-        return move, "MOVE_INC"
-    if move.path:
-        return move, f"MOVE {move.kind} PATH"
-    if move.kind not in ("PTP", "LIN", "CIRCLE"):
-        return move, f"MOVE {move.kind}"
-    for param in move.params:
-        if param.name.key in _READ_ONLY_PARAMS:
-            return param, f"the parameter {param.name.name}"
     for clause in move.clauses:
         if not isinstance(clause, _CLAUSES):
             return clause, part_name(clause)
@@ -142,8 +117,6 @@ def _parts(root: tree.Node, declared: frozenset[str]) -> Iterator[tuple[tree.Nod
                 missing = missing_in_move(node)
                 if missing is not None:
                     yield missing
-            case tree.Call(name=name) if name.key in builtins.PROCEDURES and name.key not in declared:
-                yield node, f"the procedure {name.name}"
             case tree.FunctionCall(name=name, arguments=arguments) if name.key not in declared:
                 if name.key in _READ_ONLY_FUNCTIONS:
                     yield node, f"the function {name.name}"
@@ -151,9 +124,5 @@ def _parts(root: tree.Node, declared: frozenset[str]) -> Iterator[tuple[tree.Nod
                     yield node, "the function POSTURE with an obstacle"
             case tree.NamedType(name=name) if name.key in LATER_TYPES - declared:
                 yield node, f"the type {name.name}"
-            case tree.Designator(base=name) if name.key not in _EXECUTED_NAMES | declared:
-                what = system_name(name)
-                if what:
-                    yield name, what
             case _ if type(node) in _NAMES and not isinstance(node, tree.WithTolerance):
                 yield node, part_name(node)

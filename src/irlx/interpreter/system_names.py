@@ -5,7 +5,7 @@ from __future__ import annotations
 from irlx.language import tree
 from irlx.language.builtins import SYSTEM_VARIABLES
 
-LATER_TYPES = frozenset({"file", "semaphore", "signal"})
+LATER_TYPES = frozenset({"semaphore", "signal"})
 """Predefined types that are read only, by casefolded name."""
 
 

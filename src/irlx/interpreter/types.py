@@ -4,6 +4,7 @@ from irlx.language.types import (
     ADD_JOINT,
     BOOL,
     CHAR,
+    FILE,
     INT,
     JOINT_RECORDS,
     ORIENTATION,
@@ -16,7 +17,9 @@ from irlx.language.types import (
     Simple,
     Type,
     ambiguous_field,
+    joint_bounds,
     joint_type,
+    joint_weights,
     predefined_types,
 )
 
@@ -24,6 +27,7 @@ __all__ = [
     "ADD_JOINT",
     "BOOL",
     "CHAR",
+    "FILE",
     "INT",
     "JOINT_RECORDS",
     "ORIENTATION",
@@ -36,6 +40,8 @@ __all__ = [
     "Simple",
     "Type",
     "ambiguous_field",
+    "joint_bounds",
     "joint_type",
+    "joint_weights",
     "predefined_types",
 ]

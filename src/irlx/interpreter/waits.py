@@ -1,4 +1,4 @@
-"""WAIT and WAIT FOR: statements that let time pass while the robot stands."""
+"""WAIT, WAIT FOR and PAUSE: statements that let time pass while the robot stands."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Callable
 from math import inf
 from typing import TYPE_CHECKING
 
-from irlx.blocks import AskInputChange, WaitBlock
+from irlx.blocks import AskInputChange, AskPause, PauseBlock, WaitBlock
 from irlx.interpreter.code import Frame, Label, Step
 from irlx.interpreter.errors import fail
 from irlx.interpreter.signals import watched
@@ -35,6 +35,32 @@ def add_wait(statements: Statements, node: tree.WaitTime) -> None:
         return step
 
     statements.assembler.add(node, make)
+
+
+def add_pause(statements: Statements, node: tree.Pause) -> None:
+    """Add the steps of PAUSE: ask how long it lasts, and stand for that time."""
+    assembler, machine = statements.assembler, statements.context.machine
+    origin, lasts = origin_of(statements.context.source, node), assembler.slot()
+    asked = AskPause(origin)
+
+    def ask(following: int) -> Step:
+        def step(frame: Frame) -> int:
+            def taken(answer: tuple[float, ...]) -> None:
+                frame[lasts] = answer[0]
+
+            return machine.ask(asked, taken, following)
+
+        return step
+
+    def stand(following: int) -> Step:
+        def step(frame: Frame) -> int:
+            block = PauseBlock(id=machine.next_id(), origin=origin, duration=frame[lasts])
+            return machine.emit((block,), following)
+
+        return step
+
+    assembler.add(node, ask)
+    assembler.add(node, stand)
 
 
 def add_wait_for(statements: Statements, node: tree.WaitFor) -> None:

@@ -5,11 +5,25 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TypeAlias
 
+from irlx.interpreter.channels.channels import Channels
 from irlx.interpreter.list_text import Rewritten, rewritten
 from irlx.interpreter.machine import Machine
-from irlx.interpreter.scope import Scope, Variable
+from irlx.interpreter.quaternion import IDENTITY
+from irlx.interpreter.scope import Followed, Scope, Variable
 from irlx.interpreter.setting import SYSTEM_REALS, Setting
-from irlx.interpreter.types import ADD_JOINT, INT, POSE, REAL, Array, Record, predefined_types
+from irlx.interpreter.types import (
+    ADD_JOINT,
+    BOOL,
+    INT,
+    POSE,
+    REAL,
+    STRING,
+    Array,
+    Record,
+    joint_bounds,
+    joint_weights,
+    predefined_types,
+)
 from irlx.interpreter.values import ArrayValue, RecordValue, Value, share, unset_value
 from irlx.language.data_lists import ImportedList
 
@@ -19,9 +33,10 @@ ListValues: TypeAlias = "Callable[[ImportedList, Scope, World], dict[str, Variab
 class World:
     """Exists once a run; `modules` are the scopes of those that are declared, by casefolded name."""
 
-    def __init__(self, setting: Setting, machine: Machine) -> None:
+    def __init__(self, setting: Setting, machine: Machine, channels: Channels | None = None) -> None:
         self.setting = setting
         self.machine = machine
+        self.channels = channels or Channels()
         self.modules: dict[str, Scope] = {}
         self._lists: dict[str, dict[str, Variable]] = {}
         self._first: dict[str, dict[str, Value]] = {}
@@ -54,14 +69,32 @@ class World:
 
 
 def _system_variables(setting: Setting) -> dict[str, Variable]:
-    variables = {n.casefold(): Variable(n, REAL, float(setting.defaults[n])) for n in SYSTEM_REALS}
+    joints = len(setting.joint_names)
+    here = RecordValue(POSE, (_reals(0, (0.0, 0.0, 0.0)), _reals(1, IDENTITY)))
+    each = joint_weights(joints)
+    weights = ArrayValue(each, list(setting.weights or (1.0,) * joints), shared=True)
+    known = [
+        *(Variable(name, REAL, float(setting.default(name))) for name in SYSTEM_REALS),
+        Variable("R_C_PASS", BOOL, setting.default("R_C_PASS")),
+        Variable("R_PROFILE", STRING, setting.default("R_PROFILE")),
+        Variable("R_BASE", POSE, here),
+        Followed("R_TOOL", POSE, here),
+        Followed("R_WEIGHTS", each, weights),
+    ]
+    variables = {variable.name.casefold(): variable for variable in known}
     for name, (at, turned) in setting.poses.items():
         value = RecordValue(POSE, (_reals(0, at), _reals(1, turned)))
         variables[name.casefold()] = Variable(name, POSE, value, constant=True)
-    types = predefined_types(len(setting.joint_names))
+    types = predefined_types(joints)
+    asked = {
+        "R_JOINT_ACT": types["joint"],
+        "R_ROBTARGET_ACT": types["robtarget"],
+        "R_JBD": joint_bounds(types),
+    }
+    asked |= dict.fromkeys(("R_MOVE_TIME", "R_DISTANCE_FORW", "R_DISTANCE_BACK"), REAL)
     # Read by questions; what stands here says that they cannot be set.
-    for name, type in (("R_JOINT_ACT", "joint"), ("R_ROBTARGET_ACT", "robtarget")):
-        variables[name.casefold()] = Variable(name, types[type], unset_value(types[type]), constant=True)
+    for name, type in asked.items():
+        variables[name.casefold()] = Variable(name, type, unset_value(type), constant=True)
     return variables
 
 

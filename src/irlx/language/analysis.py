@@ -10,10 +10,10 @@ from typing import TypeAlias
 from irlx.diagnostics import Diagnostic, Place, SourceText, Span, report
 from irlx.language import tree
 from irlx.language.checking import check_types
-from irlx.language.checking.consequences import standing_alone
+from irlx.language.checking.consequences import standing_alone, without_missing_var
 from irlx.language.criteria import check_criterion
 from irlx.language.data_lists import DataListResolver, ImportedList, imports_of, in_order
-from irlx.language.lints import lints_of
+from irlx.language.lints import first_of_each, lints_of
 from irlx.language.modules import ImportedModule, ModuleProblem, exported, missing_exports, no_module
 from irlx.language.moves import check_move
 from irlx.language.names import check_names
@@ -23,7 +23,7 @@ from irlx.language.suppression import Ignore, after_ignoring
 from irlx.language.switches import check_freeze, check_switches
 from irlx.language.symbols import Symbol
 
-__all__ = ["Analysis", "CellNames", "DataListResolver", "Resolver", "analyse"]
+__all__ = ["Analysis", "CellJoints", "CellNames", "DataListResolver", "Resolver", "analyse"]
 
 _Root: TypeAlias = "tree.Program | tree.Module | tree.DataList"
 
@@ -35,6 +35,10 @@ Raises ModuleProblem for one that cannot be used.
 
 CellNames: TypeAlias = "Callable[[tree.Program | tree.Module], Collection[str]]"
 """Gives the names that the cell of a program adds to it and its modules, those of its frames."""
+
+
+CellJoints: TypeAlias = "Callable[[tree.Program | tree.Module], tuple[str, ...]]"
+"""Gives the names of the joints of a program's robot, none where they are not known."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +77,7 @@ def analyse(
     cell_names: CellNames | None = None,
     data_lists: DataListResolver | None = None,
     *,
-    joints: tuple[str, ...] = (),
+    joints: tuple[str, ...] | CellJoints = (),
     lints: bool = False,
 ) -> Analysis:
     """Parse and check a text; never raises for what a text may hold.
@@ -81,8 +85,8 @@ def analyse(
     Without a `resolver` imported names are taken as declared and modules are not looked at. What
     `cell_names` gives counts as constants of the program, which its own declarations may hide.
     `data_lists` gives the texts of data lists; without it, one that is imported may hold any name.
-    `joints` are those of the robot where it is known, and with `lints` there are warnings of what is allowed
-    but seldom meant.
+    `joints` are those of the robot where it is known, or what gives them for a tree, and with `lints` there
+    are warnings of what is allowed but seldom meant.
     """
     parsed = parse(source)
     if parsed.tree is None:
@@ -91,6 +95,7 @@ def analyse(
         cell_names(parsed.tree) if cell_names and isinstance(parsed.tree, tree.Program | tree.Module) else ()
     )
     imports = imports_of(parsed.tree, source, data_lists)
+    names = _joint_names(parsed.tree, joints)
     scope, findings = check_names(parsed.tree, source, given, imports, complete=parsed.complete)
     findings += _static_findings(parsed.tree, source)
     modules, on_imports = _imported(parsed.tree, source, resolver)
@@ -99,11 +104,12 @@ def analyse(
         source,
         imports.lists,
         given,
-        joints,
+        names,
         modules,
         complete=parsed.complete and imports.whole,
     )
     findings += standing_alone(typed.findings, (*parsed.findings, *imports.findings))
+    findings = without_missing_var(findings, parsed.tree, parsed.findings)
     if lints and parsed.complete:
         findings += lints_of(parsed.tree, source, typed)
     findings += on_imports
@@ -114,7 +120,7 @@ def analyse(
     return Analysis(
         source,
         parsed.tree,
-        in_order(told, source, imports.lists),
+        tuple(first_of_each(in_order(told, source, imports.lists))),
         parsed.comments,
         MappingProxyType({**scope.values, **typed.symbols}),
         MappingProxyType({**scope.types, **typed.types}),
@@ -123,6 +129,12 @@ def analyse(
         references=typed.references,
         routines=typed.routines,
     )
+
+
+def _joint_names(root: _Root, joints: tuple[str, ...] | CellJoints) -> tuple[str, ...]:
+    if isinstance(joints, tuple):
+        return joints
+    return () if isinstance(root, tree.DataList) else joints(root)
 
 
 def _static_findings(root: tree.Node, source: SourceText) -> list[Diagnostic]:

@@ -3,9 +3,15 @@
 from __future__ import annotations
 
 __all__ = [
+    "BARE_FUNCTIONS",
     "FUNCTIONS",
+    "LAYOUT_BOUNDS",
     "MOVE_PARAMETERS",
+    "OPEN_MODES",
+    "PORT_NAME",
     "PROCEDURES",
+    "SIMPLE_VALUE",
+    "STANDARD_CHANNELS",
     "SYSTEM_VARIABLES",
     "TYPES",
     "is_port_name",
@@ -31,12 +37,27 @@ FUNCTIONS = _table(
     " ORIQUAT ORIVANG ORIMAT ORIRS ORIXYZ ORIYXZ ORIZYX ORIZYZ2"
     " QUATA QUATB QUATC QUATD ROTANGLE ROTAXIS VECTORN VECTORO VECTORA ANGLEX ANGLEY ANGLEZ"
     " INV CROSS DOT NORM ABS SQRT SIN COS TAN ASIN ACOS ATAN ATAN2 EXP LN ROUND TRUNC FLOAT ORD CHR LEN"
-    " DISTANCE FK IK MANIPULABILITY CLEARANCE POSTURE"
+    " DISTANCE FK IK MANIPULABILITY CLEARANCE POSTURE EOF"
 )
 """Predefined functions and constructors, casefolded name to spelling."""
 
+BARE_FUNCTIONS = frozenset({"eof"})
+"""Predefined functions that may be called by their name alone, casefolded."""
+
 PROCEDURES = _table("OPEN CLOSE READ WRITE WRITELN")
 """Predefined procedures, casefolded name to spelling."""
+
+OPEN_MODES = ("READ", "WRITE", "APPEND")
+"""Modes of OPEN."""
+
+LAYOUT_BOUNDS = {"width": 1_000, "precision": 100}
+"""What WRITE takes at most as the parts of a layout; at least 0."""
+
+SIMPLE_VALUE = "INT, REAL, CHAR, STRING or BOOL"
+"""What READ and WRITE take, for messages."""
+
+STANDARD_CHANNELS = {"IN": "KEYBOARD", "OUT": "SCREEN"}
+"""Names for the standard channels as they are, by direction."""
 
 MOVE_PARAMETERS = _table(
     "SPEED ACC TIME SPEED_ORI ACC_ORI SPEED_PTP ACC_PTP JERK C_CP C_PTP C_PASS PROFILE OVERRIDE ANGLE"
@@ -52,9 +73,10 @@ SYSTEM_VARIABLES = _table(
 )
 """System variables and defaults of the motion parameters, casefolded name to spelling."""
 
-_PORT = re.compile(r"a?(in|out)_[0-9]+")
+PORT_NAME = re.compile(r"a?(?:in|out)_[0-9]+")
+"""Casefolded names of ports."""
 
 
 def is_port_name(key: str) -> bool:
     """Whether a casefolded name is that of a port, such as ``out_3``, usable without a declaration."""
-    return _PORT.fullmatch(key) is not None
+    return PORT_NAME.fullmatch(key) is not None

@@ -54,8 +54,8 @@ def _clauses(move: tree.Move) -> Iterator[tuple[str, Span, dict[str, Any]]]:
         seen.add(kind.casefold())
         if not isinstance(clause, tree.WithReconfiguration):
             continue
-        # A PATH may take both lists from array variables, whose lengths the text does not tell.
-        listed = not move.path or (len(move.targets) > 1 and len(clause.targets) > 1)
+        # A PATH may take both lists from array variables, whose lengths their types tell.
+        listed = not move.path
         counts = {len(move.targets), len(move.targets) // 2 if move.kind == "CIRCLE" else len(move.targets)}
         if listed and len(clause.targets) not in counts:
             data = {"targets": len(move.targets), "postures": len(clause.targets)}

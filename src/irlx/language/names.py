@@ -10,6 +10,7 @@ from irlx.diagnostics import Diagnostic, Place, SourceText, Span, report
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.language import tree
 from irlx.language.builtins import (
+    BARE_FUNCTIONS,
     FUNCTIONS,
     MOVE_PARAMETERS,
     PROCEDURES,
@@ -135,6 +136,7 @@ class NamePass:
     def _designator(self, node: tree.Designator) -> None:
         name = node.base
         known = name.key in SYSTEM_VARIABLES or self.scope.value(name.key) is not None
+        known = known or (name.key in BARE_FUNCTIONS and not node.selectors)
         if known or self.scope.is_given(name.key):
             return
         if is_port_name(name.key):
@@ -183,6 +185,8 @@ class NamePass:
         symbol = self.scope.value(target.base.key)
         kind = symbol.kind if symbol is not None else ""
         words = _READ_ONLY.get(kind) or _NOT_SET.get(kind)
+        if symbol is None and target.base.key in BARE_FUNCTIONS and not target.selectors:
+            words = "a function"
         if self.scope.is_given(target.base.key):
             words = "a frame of the cell"
         if words:

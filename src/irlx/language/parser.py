@@ -28,13 +28,15 @@ __all__ = ["Parse", "parse"]
 class Parse:
     """What a text gives: a tree, partial after a mistake or None, findings, and comments.
 
-    `complete` is False where recovery left text out, so that what is missing proves nothing.
+    `complete` is False where recovery left text out, so that what is missing proves nothing; `lexed` is the
+    text split into words, as it was read.
     """
 
     tree: Program | Module | DataList | None
     findings: tuple[Diagnostic, ...]
     comments: tuple[Span, ...]
     complete: bool
+    lexed: Lexed
 
 
 _NO_HINTS = Hints()
@@ -81,7 +83,7 @@ class _Attempt:
         lexed, driver = self.lexed, self.driver
         findings = _first_errors([*lexed.findings, *self.told])
         complete = driver.complete and not lexed.torn
-        return Parse(driver.machine.result, findings, lexed.comments, complete)
+        return Parse(driver.machine.result, findings, lexed.comments, complete, lexed)
 
 
 def _is_code(source: SourceText, attempt: _Attempt) -> bool:

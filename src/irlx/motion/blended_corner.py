@@ -12,6 +12,7 @@ from irlx.motion.curved_path import CurvedPath
 from irlx.motion.hermite import Jet, quintic
 from irlx.motion.polynomial_curve import PolynomialCurve
 from irlx.motion.pose_path import PosePath
+from irlx.motion.rotation_vector import cross
 from irlx.motion.turn_curve import TurnCurve, TurnJet
 
 Array = NDArray[np.float64]
@@ -22,6 +23,7 @@ SECTIONS = 8
 _SAMPLES = np.linspace(0.0, 1.0, 33)
 _TANGENTS = np.linspace(0.75, 1.45, 15)
 _USUAL_TANGENT = 0.9
+_REFINEMENTS = 4
 _TIE = 1e-6
 _POWERS = np.arange(5, -1, -1)
 _SLOPES = _POWERS[:-1] * _SAMPLES[:, None] ** np.arange(4, -1, -1)
@@ -58,10 +60,9 @@ def blended_corner(before: PosePath, after: PosePath, distance: float) -> Blende
     turns = TurnCurve.through(breaks, corner_rotation[None], [(start_turn, end_turn)])
     nearest = _nearest(curve, before.end_position)
     steps = np.linspace(0.0, 1.0, SECTIONS + 1)
-    cuts = curve.length_at(np.concatenate([nearest * steps, nearest + (1.0 - nearest) * steps[1:]]))
-    cuts[0], cuts[-1] = 0.0, curve.length
+    cuts = np.concatenate([nearest * steps, nearest + (1.0 - nearest) * steps[1:]])
     path = CurvedPath(curve, turns, cuts, end.value, end_turn.rotation)
-    corner = float(cuts[SECTIONS])
+    corner = float(curve.length_at(np.array([nearest]))[0])
     point = curve.points(np.array([nearest]))[0]
     rotation = turns.rotations(np.array([corner]))[0]
     miss = float(np.linalg.norm(point - before.end_position))
@@ -83,39 +84,32 @@ def _flattest(start: Jet, end: Jet) -> Array:
     chord = float(np.linalg.norm(end.value - start.value))
     half = 0.5 * _angle(start.rate, end.rate)
     arc = chord * (half / sin(half) if half > 0.0 else 1.0)
-    candidates = np.stack([_coefficients(start, end, share * arc) for share in _TANGENTS])
+    tangents = (arc * _TANGENTS)[:, None]
+    ends = [Jet(jet.value, tangents * jet.rate, tangents**2 * jet.bend) for jet in (start, end)]
+    candidates = np.transpose(quintic(ends[0], ends[1], 1.0), (1, 0, 2))
     slopes, bends = _SLOPES @ candidates[:, :5], _BENDS @ candidates[:, :4]
     speeds = np.linalg.norm(slopes, axis=-1)
     with np.errstate(divide="ignore", invalid="ignore"):
-        curvature = np.linalg.norm(np.cross(slopes, bends), axis=-1) / speeds**3
+        curvature = np.linalg.norm(cross(slopes, bends), axis=-1) / speeds**3
     peaks = np.max(np.where(np.isfinite(curvature), curvature, np.inf), axis=1)
     # Straight on all are alike: the one that runs most evenly.
     ties = _TIE / arc * np.abs(_TANGENTS - _USUAL_TANGENT)
     return np.asarray(candidates[int(np.argmin(peaks + ties))])
 
 
-def _coefficients(start: Jet, end: Jet, tangent: float) -> Array:
-    first, last = (Jet(jet.value, tangent * jet.rate, tangent**2 * jet.bend) for jet in (start, end))
-    return quintic(first, last, 1.0)
-
-
 def _nearest(curve: PolynomialCurve, corner: Array) -> float:
     """Parameter of the curve's point nearest to the corner."""
-    points = curve.points(_SAMPLES)
-    best = int(np.clip(np.argmin(np.linalg.norm(points - corner, axis=1)), 1, len(_SAMPLES) - 2))
-    low, high = _SAMPLES[best - 1], _SAMPLES[best + 1]
-    for _ in range(40):
-        middle = np.array([0.5 * (low + high)])
-        away = curve.points(middle)[0] - corner
-        if float(away @ curve.along(middle)[0][0]) < 0.0:
-            low = float(middle[0])
-        else:
-            high = float(middle[0])
-    return 0.5 * float(low + high)
+    low, high = 0.0, 1.0
+    for _ in range(_REFINEMENTS):
+        u = low + (high - low) * _SAMPLES
+        nearest = int(np.argmin(np.linalg.norm(curve.points(u) - corner, axis=1)))
+        best = int(np.clip(nearest, 1, len(u) - 2))
+        low, high = float(u[best - 1]), float(u[best + 1])
+    return 0.5 * (low + high)
 
 
 def _angle(a: Array, b: Array) -> float:
-    return float(np.arctan2(np.linalg.norm(np.cross(a, b)), a @ b))
+    return float(np.arctan2(np.linalg.norm(cross(a, b)), a @ b))
 
 
 def _angle_between(a: Array, b: Array) -> float:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from math import pi, sqrt
 
 import numpy as np
+from scipy.optimize import brentq
 
 from irlx.motion.blended_corner import SECTIONS, BlendedCorner, blended_corner
 from irlx.motion.edges import Edge
@@ -20,11 +21,13 @@ LEAST_BLEND = 1e-6
 LEAST_PASS = 1e-4
 """Shortest distance of a blend by C_PASS, m."""
 
+LONGEST_WAY = 1e6
+"""Longest way beside a blend, m: from there on, too, it would be made of rounding."""
+
 _CURVE_SHARE = 0.7
 """Part of ACC that an arc may take across where a blend at the programmed speed shall join it."""
 
 _ENOUGH = 1e-3
-_MOST_STEPS = 12
 
 
 @dataclass(frozen=True)
@@ -69,6 +72,8 @@ def _hindrance(before: Edge, after: Edge) -> str:
             return f"{name} has no length"
         if edge.path.is_pure_turn:
             return f"{name} turns the tool on the spot"
+        if not edge.path.length < LONGEST_WAY:
+            return f"{name} is too long"
     leaving = before.path.derivatives(np.array([before.path.length]))[0][0]
     joining = after.path.derivatives(np.array([0.0]))[0][0]
     angle = float(np.arctan2(np.linalg.norm(np.cross(leaving, joining)), leaving @ joining))
@@ -78,21 +83,26 @@ def _hindrance(before: Edge, after: Edge) -> str:
 def _least_distance(before: Edge, after: Edge, room: float) -> float:
     """Smallest distance at which a blend keeps the speed that both neighbours have, at most `room`.
 
-    Between straight lines the bend of a blend falls exactly with 1/distance, elsewhere nearly so.
+    What a blend bends is nearly a constant plus a term with 1/distance; between straight lines it is that
+    term alone.
     """
     speeds = _speed(before), _speed(after)
-    distance = room
-    for _ in range(_MOST_STEPS):
-        strain = _strain(blended_corner(before.path, after.path, distance), (before, after), speeds)
-        if distance >= room and strain >= 1.0:
-            return room
-        following = min(distance * strain, room)
-        if isinstance(before.path, Line) and isinstance(after.path, Line):
-            return following
-        if abs(following - distance) <= _ENOUGH * distance and strain <= 1.0 + _ENOUGH:
-            return following
-        distance = max(following, 0.1 * distance)
-    return distance
+
+    def excess(inverse: float) -> float:
+        blend = blended_corner(before.path, after.path, 1.0 / inverse)
+        return _strain(blend, (before, after), speeds) - 1.0
+
+    if room <= LEAST_PASS:
+        return room
+    least, most = 1.0 / room, 1.0 / LEAST_PASS
+    at_room = excess(least)
+    if at_room >= 0.0:
+        return room
+    if isinstance(before.path, Line) and isinstance(after.path, Line):
+        return room * (1.0 + at_room)
+    if excess(most) <= 0.0:
+        return LEAST_PASS
+    return min((1.0 + _ENOUGH) / float(brentq(excess, least, most, rtol=_ENOUGH)), room)
 
 
 def _speed(edge: Edge) -> float:

@@ -16,13 +16,15 @@ from irlx.motion.turn_curve import TurnCurve
 Array = NDArray[np.float64]
 
 _SAMPLES = 5
+_SHARES = np.linspace(0.0, 1.0, _SAMPLES)
 
 
 @dataclass(frozen=True)
 class CurvedPath:
     """Position on a curve by its arc length s, orientation by the same s.
 
-    `cuts` (M + 1,): values of s, from 0 to the length, between which the time law takes the largest bend.
+    `cuts` (M + 1,): parameters of the curve from its start to its end; between two of them lies a section,
+    for which the time law takes the largest bend.
     `end_position` (3,) and `end_rotation` (3, 3) are what the last pose is exactly.
     """
 
@@ -48,11 +50,13 @@ class CurvedPath:
     @cached_property
     def shape(self) -> Shape:
         """Largest curvature, turn rate and turn bend between the cuts."""
-        widths = np.diff(self.cuts)
-        shares = np.linspace(0.0, 1.0, _SAMPLES)
-        s = (self.cuts[:-1, None] + widths[:, None] * shares).ravel()
-        (_, rate), (across, bend) = self.derivatives(s), self.second_derivatives(s)
-        return Shape(widths, *(_largest(values, len(widths)) for values in (across, rate, bend)))
+        sections = len(self.cuts) - 1
+        u = (self.cuts[:-1, None] + np.diff(self.cuts)[:, None] * _SHARES).ravel()
+        s = self.curve.length_at(u)
+        ends = np.append(s[::_SAMPLES], self.length)
+        rate, bend = self.turns.rates(s)
+        across = self.curve.along(u)[1]
+        return Shape(np.diff(ends), *(_largest(values, sections) for values in (across, rate, bend)))
 
     @property
     def turn_rate(self) -> float:
@@ -79,11 +83,11 @@ class CurvedPath:
 
     def derivatives(self, s: Array) -> tuple[Array, Array]:
         """First derivative by s of position (N, 3) and of orientation (N, 3, rotation vector, world)."""
-        return self.curve.along(self.curve.parameters_at(s))[0], self.turns.rates(s)
+        return self.curve.along(self.curve.parameters_at(s))[0], self.turns.rates(s)[0]
 
     def second_derivatives(self, s: Array) -> tuple[Array, Array]:
         """Derivatives by s of the two parts of `derivatives`, each (N, 3)."""
-        return self.curve.along(self.curve.parameters_at(s))[1], self.turns.bends(s)
+        return self.curve.along(self.curve.parameters_at(s))[1], self.turns.rates(s)[1]
 
 
 def _largest(vectors: Array, sections: int) -> Array:

@@ -49,6 +49,11 @@ class Edge:
     point: int = 0
 
     @property
+    def where(self) -> str:
+        """What is at its end, in words."""
+        return f"point {self.point} of its PATH" if self.point else "its target"
+
+    @property
     def shape(self) -> Shape:
         """Sections that the time law sees: one, or those of a spline."""
         path = self.path

@@ -8,19 +8,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.blocks import MotionLaw, PathCourse, Profile
+from irlx.blocks import PathCourse
 from irlx.diagnostics import Diagnostic, Place, Related, report
 from irlx.motion.blended_corner import SECTIONS
+from irlx.motion.chain_law import Stage, chain_law
 from irlx.motion.chain_path import ChainPath, Piece
 from irlx.motion.corner import Corner, Lost, corner_between
 from irlx.motion.curved_path import CurvedPath
 from irlx.motion.edges import Edge, Leg, edges_of
 from irlx.motion.errors import MotionError
-from irlx.motion.fastest_law import fastest_s_curves, fastest_trapezoids
 from irlx.motion.path_part import PathPart
-from irlx.motion.plan_path import PlannedPath, in_whole_ticks, path_law, standing, with_time
-from irlx.motion.sections import Sections, Shape, bounds_of
-from irlx.motion.time_law import TimeLaw
+from irlx.motion.plan_path import PlannedPath, in_whole_ticks, path_law, standing
+from irlx.motion.sections import Shape, bounds_of
 
 __all__ = ["Join", "Leg", "PlannedChain", "lost_blend", "plan_chain"]
 
@@ -53,7 +52,7 @@ class PlannedChain(PlannedPath):
     PATH, `points` of that leg's points are done, else 0. `ends` (one for each leg touched): path parameter at
     which the leg hands over to the next, the last one `path.length`. `marks`: for each leg touched the path
     parameters next to its targets (via point, PATH points, the end). `joins` are the blended corners, `notes`
-    blends lost or cut.
+    blends lost or cut. `time_left`: what is left of the TIME of a leg that is not done, s.
     """
 
     legs: int
@@ -62,6 +61,7 @@ class PlannedChain(PlannedPath):
     marks: tuple[tuple[float, ...], ...]
     joins: tuple[Join, ...]
     notes: tuple[Diagnostic, ...]
+    time_left: float | None = None
 
     def rest(self, legs: Sequence[Leg]) -> tuple[Leg, ...]:
         """What is left to do of the legs that this motion was planned from, for the next `plan_chain`."""
@@ -74,7 +74,8 @@ class PlannedChain(PlannedPath):
             raise TypeError("a motion stops inside a leg only along a PATH")
         reconfigurations = course.reconfigurations[self.points :]
         following = PathCourse(course.points[self.points :], reconfigurations)
-        shortened = replace(block, course=following if following.points else None)
+        law = replace(block.law, duration=self.time_left)
+        shortened = replace(block, law=law, course=following if following.points else None)
         return (replace(left[0], block=shortened), *left[1:])
 
 
@@ -87,6 +88,7 @@ def plan_chain(legs: Sequence[Leg], start_rotation: Array, start_position: Array
     """
     run = _first_run(legs, start_rotation, start_position)
     chained = _chained(run)
+    run, time_left = _with_part_of_time(legs, run, chained, dt)
     plan = _timed(chained, run, dt)
     last = run.edges[-1]
     whole = last.point == 0
@@ -101,13 +103,20 @@ def plan_chain(legs: Sequence[Leg], start_rotation: Array, start_position: Array
         _marks(run, chained, plan.path.length),
         tuple(_joins(run, chained)),
         tuple(run.notes),
+        time_left,
     )
 
 
-def lost_blend(place: Place, reason: str, next_place: Place | None = None) -> Diagnostic:
-    """The note, IRL432, that a move at `place` stops instead of blending into the one at `next_place`."""
-    related = () if next_place is None else (Related("the next move", next_place),)
-    return report("IRL432", place, related=related, reason=reason)
+def lost_blend(
+    place: Place,
+    reason: str,
+    next_place: Place | None = None,
+    where: str = "its target",
+    what: str = "the next move",
+) -> Diagnostic:
+    """The note, IRL432, that a move at `place` stops, and `what` stops it at `next_place`."""
+    related = () if next_place is None else (Related(what, next_place),)
+    return report("IRL432", place, related=related, where=where, reason=reason)
 
 
 @dataclass(frozen=True)
@@ -141,7 +150,8 @@ def _first_run(legs: Sequence[Leg], rotation: Array, position: Array) -> _Run:
         found = corner_between(last, following)
         if isinstance(found, Lost):
             if found.reason:
-                run.notes.append(lost_blend(last.place, found.reason, following.place))
+                behind = _next_place(last, following)
+                run.notes.append(lost_blend(last.place, found.reason, behind, last.where))
             return run
         if found.cut:
             run.notes.append(_cut_note(last, following, found))
@@ -162,7 +172,14 @@ def _next_edges(legs: Sequence[Leg], last: Edge) -> list[Edge]:
 def _cut_note(before: Edge, after: Edge, corner: Corner) -> Diagnostic:
     asked = before.blend.distance if before.blend is not None else None
     data = {"asked": f"{(asked or 0.0) * 1000.0:.6g}", "used": f"{corner.distance * 1000.0:.6g}"}
-    return report("IRL433", before.place, related=(Related("the next move", after.place),), **data)
+    following = _next_place(before, after)
+    related = () if following is None else (Related("the next move", following),)
+    return report("IRL433", before.place, related=related, where=before.where, **data)
+
+
+def _next_place(before: Edge, after: Edge) -> Place | None:
+    """Place of the move that follows, None where it is the same one."""
+    return None if after.leg == before.leg else after.place
 
 
 def _chained(run: _Run) -> _Chained:
@@ -194,6 +211,40 @@ def _shape_of(edge: Edge, first: float, last: float) -> Shape:
     return Shape(lengths[kept], shape.curvature[kept], shape.turn_rate[kept], shape.turn_bend[kept])
 
 
+def _with_part_of_time(
+    legs: Sequence[Leg], run: _Run, chained: _Chained, dt: float
+) -> tuple[_Run, float | None]:
+    """Give a leg with TIME that stops at a point of its PATH its part of that time; also what is left of it.
+
+    All parts of the leg are slower than they could be by the same factor.
+    """
+    last = run.edges[-1]
+    time = last.law.duration
+    if time is None or not last.point:
+        return run, None
+    free = _with_duration(run, last.leg, None)
+    plan = _timed(chained, free, dt)
+    start = _ends(run, chained, plan.path.length)[-2:-1] or (0.0,)
+    part = plan.programmed.duration - float(plan.programmed.times_at(np.array(start))[0])
+    whole = part
+    block = replace(legs[last.leg].block, law=replace(last.law, duration=None), blend=last.blend)
+    left: tuple[Leg, ...] = (replace(legs[last.leg], block=block),)
+    done = PlannedChain(plan.path, plan.law, plan.ticks, plan.programmed, 0, last.point, (), (), (), ())
+    while left := done.rest(left):
+        done = plan_chain(left, done.path.end_rotation, done.path.end_position, dt)
+        whole += done.programmed.duration
+    return _with_duration(run, last.leg, time * part / whole), time * (1.0 - part / whole)
+
+
+def _with_duration(run: _Run, leg: int, duration: float | None) -> _Run:
+    """The run with another TIME for one leg."""
+    edges = [
+        replace(edge, law=replace(edge.law, duration=duration)) if edge.leg == leg else edge
+        for edge in run.edges
+    ]
+    return replace(run, edges=edges)
+
+
 def _timed(chained: _Chained, run: _Run, dt: float) -> PlannedPath:
     first = run.edges[0]
     if not run.corners and not isinstance(first.path, CurvedPath):
@@ -201,8 +252,7 @@ def _timed(chained: _Chained, run: _Run, dt: float) -> PlannedPath:
             return standing(first.path)
         return in_whole_ticks(first.path, path_law(first.path, first.law, first.place), dt, first.place)
     path = first.path if not run.corners else _path_of(chained, run)
-    law = _law_of(chained, run, path.length)
-    return in_whole_ticks(path, law, dt, first.place)
+    return in_whole_ticks(path, chain_law(_stages(chained, run), path.length), dt, first.place)
 
 
 def _path_of(chained: _Chained, run: _Run) -> ChainPath:
@@ -217,22 +267,23 @@ def _path_of(chained: _Chained, run: _Run) -> ChainPath:
     return ChainPath(tuple(pieces), end.end_position, end.end_rotation, widest)
 
 
-def _law_of(chained: _Chained, run: _Run, length: float) -> TimeLaw:
-    bounds: list[Sections] = []
+def _stages(chained: _Chained, run: _Run) -> list[Stage]:
+    """Sections of every leg: its edges, the halves of blends at its ends, the blends inside it."""
+    shapes: list[list[Shape]] = []
     for k, (edge, part) in enumerate(zip(run.edges, chained.parts, strict=True)):
+        if len(shapes) <= edge.leg:
+            shapes.append([])
         if k:
-            bounds.append(
-                bounds_of(run.corners[k - 1].blend.path.shape.part(slice(SECTIONS, None)), edge.law)
-            )
+            shapes[-1].append(run.corners[k - 1].blend.path.shape.part(slice(SECTIONS, None)))
         if part is not None:
-            bounds.append(bounds_of(part.shape, edge.law))
+            shapes[-1].append(part.shape)
         if k < len(run.corners):
-            bounds.append(bounds_of(run.corners[k].blend.path.shape.part(slice(SECTIONS)), edge.law))
-    sections = Sections.joined(bounds)
-    law: MotionLaw = run.edges[0].law
-    curved = any(edge.law.profile is Profile.S_CURVE for edge in run.edges)
-    fastest = (fastest_s_curves if curved else fastest_trapezoids)(sections, length)
-    return with_time(fastest, law, run.edges[0].place, lambda: "SPEED, ACC, SPEED_ORI and ACC_ORI")
+            shapes[-1].append(run.corners[k].blend.path.shape.part(slice(SECTIONS)))
+    found = []
+    for leg, parts in enumerate(shapes):
+        edge = next(edge for edge in run.edges if edge.leg == leg)
+        found.append(Stage(bounds_of(Shape.joined(parts), edge.law), edge.law, edge.place))
+    return found
 
 
 def _ends(run: _Run, chained: _Chained, length: float) -> tuple[float, ...]:

@@ -62,6 +62,10 @@ class PolynomialCurve:
         """Points (N, 3), m, at the parameters u (N,)."""
         return np.asarray(self._curve(u))
 
+    def velocities(self, u: Array) -> Array:
+        """dP/du (N, 3) at u (N,)."""
+        return np.asarray(self._slope(u))
+
     def speeds(self, u: Array) -> Array:
         """ds/du (N,) at u (N,)."""
         return np.asarray(np.linalg.norm(self._slope(u), axis=-1))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import sqrt
 
 import numpy as np
@@ -22,6 +23,10 @@ def rising(first: float, last: float, acc: float, jerk: float) -> tuple[float, f
 
 def reach(first: float, way: float, acc: float, jerk: float) -> float:
     """Largest rate that can be reached from the rate `first` over a way (> 0)."""
+    return _kept(_reach(first, way, acc, jerk), first, lambda last: rising(first, last, acc, jerk)[1] <= way)
+
+
+def _reach(first: float, way: float, acc: float, jerk: float) -> float:
     if rising(first, first + acc * acc / jerk, acc, jerk)[1] <= way:
         # (2 first + g) (g / acc + acc / jerk) = 2 way, g the gain.
         half = 0.5 * (2.0 * first + acc * acc / jerk)
@@ -49,8 +54,7 @@ def add_s_curve(
     up, down = rising(first, peak, acc, jerk)[1], rising(last, peak, acc, jerk)[1]
     _add_change(phases, first, peak, acc, jerk)
     flat = way - up - down
-    # What rounding leaves of a way without a cruise is none.
-    if flat > _NEAREST * way:
+    if flat > 0.0:
         phases.add(flat / peak, flat, peak, acc)
     _add_change(phases, peak, last, acc, jerk)
 
@@ -66,7 +70,16 @@ def _peak(first: float, last: float, way: float, speed: float, acc: float, jerk:
         return speed
     if left(least) <= 0.0:
         return least
-    return float(brentq(left, least, speed, xtol=_NEAREST * speed, rtol=_NEAREST))
+    found = float(brentq(left, least, speed, xtol=_NEAREST * speed, rtol=_NEAREST))
+    return _kept(found, least, lambda peak: left(peak) >= 0.0)
+
+
+def _kept(rate: float, least: float, fits: Callable[[float], bool]) -> float:
+    """The rate, lowered by as little as lets it fit: rounding of a root must not lengthen the way."""
+    step = _NEAREST * rate
+    while rate > least and not fits(rate):
+        rate, step = max(rate - step, least), 2.0 * step
+    return rate
 
 
 def _add_change(phases: Phases, first: float, last: float, acc: float, jerk: float) -> None:

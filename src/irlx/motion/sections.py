@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,6 +31,14 @@ class Shape:
     turn_rate: Array
     turn_bend: Array
 
+    @classmethod
+    def joined(cls, parts: Sequence[Shape]) -> Shape:
+        """Several one after another."""
+        columns = zip(
+            *((part.lengths, part.curvature, part.turn_rate, part.turn_bend) for part in parts), strict=True
+        )
+        return cls(*(np.concatenate(column) for column in columns))
+
     def part(self, chosen: slice) -> Shape:
         """Some of the sections."""
         return Shape(
@@ -47,7 +56,7 @@ class Sections:
     jerk: Array
 
     @classmethod
-    def joined(cls, parts: list[Sections]) -> Sections:
+    def joined(cls, parts: Sequence[Sections]) -> Sections:
         """Several one after another."""
         columns = zip(*((part.lengths, part.speed, part.acc, part.jerk) for part in parts), strict=True)
         return cls(*(np.concatenate(column) for column in columns))

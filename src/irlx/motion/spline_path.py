@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from math import degrees
+from math import degrees, inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,14 +16,22 @@ from irlx.motion.errors import MotionError
 from irlx.motion.polynomial_curve import PolynomialCurve
 from irlx.motion.turn import HALF_TURN_MARGIN
 from irlx.motion.turn_curve import TurnCurve, TurnJet
+from irlx.motion.whole_ticks import ticks_of_move
 
 Array = NDArray[np.float64]
 
-SECTIONS = 12
-"""Sections of a spline between two of its points, each with a speed of its own."""
+LONGEST_WAY = 1e9
+"""Way, m, from which on a spline is beyond all numbers: no robot gets through it in the time of a move."""
 
-_SLOWEST = 0.05
+SECTIONS = 12
+"""Sections of a spline between two of its points, each with a speed of its own; more at sharp bends."""
+
+_SLOWEST = 0.02
 """Least |dP/du|, u the chord length, of a spline that has a direction everywhere."""
+
+_REFINEMENTS = 5
+_STEADY = 1.5
+_LEAST_TURN = 0.02
 
 _STEEPEST = 1.5
 """A turn's rate at a point over the smaller one of both sides: beyond 2 a turn would swing past its end."""
@@ -38,19 +46,43 @@ def spline_path(positions: Array, rotations: Array, place: Place) -> tuple[Curve
     """
     chords = np.linalg.norm(np.diff(positions, axis=0), axis=1)
     knots = np.concatenate([[0.0], np.cumsum(chords)])
+    if not knots[-1] < LONGEST_WAY:
+        ticks_of_move(inf, 1.0, place)
     curve = PolynomialCurve(knots, CubicSpline(knots, positions, bc_type="natural").c)
     steps = np.linspace(0.0, 1.0, SECTIONS + 1)[:-1]
     cuts = np.append((knots[:-1, None] + chords[:, None] * steps).ravel(), knots[-1])
-    speeds = curve.speeds(cuts)
+    speeds = _slowest(curve.velocities(cuts))
     if np.min(speeds) < _SLOWEST:
-        point = round(int(np.argmin(speeds)) / SECTIONS)
+        point = round((int(np.argmin(speeds)) + 0.5) / SECTIONS)
         raise MotionError(report("IRL435", place, point=max(point, 1)))
+    cuts = _refined(curve, cuts)
     at = curve.length_at(knots)
     at[-1] = curve.length
     turns = _turns(at, rotations, place)
-    ends = curve.length_at(cuts)
-    ends[-1] = curve.length
-    return CurvedPath(curve, turns, ends, positions[-1], rotations[-1]), at
+    return CurvedPath(curve, turns, cuts, positions[-1], rotations[-1]), at
+
+
+def _refined(curve: PolynomialCurve, cuts: Array) -> Array:
+    """The cuts with more between where the curvature changes so fast that few samples would miss its peak."""
+    for _ in range(_REFINEMENTS):
+        ends = curve.along(cuts)[1], curve.along(0.5 * (cuts[:-1] + cuts[1:]))[1]
+        at_cuts, between = (np.linalg.norm(bends, axis=1) for bends in ends)
+        three = np.stack([at_cuts[:-1], between, at_cuts[1:]])
+        # What turns the tangent by next to nothing may vary as it likes.
+        turn = np.max(three, axis=0) * curve.speeds(0.5 * (cuts[:-1] + cuts[1:])) * np.diff(cuts)
+        split = (np.max(three, axis=0) > _STEADY * np.min(three, axis=0)) & (turn > _LEAST_TURN)
+        if not np.any(split):
+            break
+        cuts = np.sort(np.concatenate([cuts, 0.5 * (cuts[:-1] + cuts[1:])[split]]))
+    return cuts
+
+
+def _slowest(velocities: Array) -> Array:
+    """Least length (N - 1,) on the straight ways between neighbours of N vectors (N, 3)."""
+    first, change = velocities[:-1], np.diff(velocities, axis=0)
+    square = np.sum(change * change, axis=1)
+    share = np.divide(-np.sum(first * change, axis=1), square, out=np.zeros_like(square), where=square > 0.0)
+    return np.asarray(np.linalg.norm(first + np.clip(share, 0.0, 1.0)[:, None] * change, axis=1))
 
 
 def _turns(at: Array, rotations: Array, place: Place) -> TurnCurve:

@@ -12,7 +12,7 @@ from scipy.interpolate import PPoly
 from scipy.spatial.transform import Rotation
 
 from irlx.motion.hermite import Jet, quintic
-from irlx.motion.rotation_vector import angular_bend, angular_rate, vector_rates
+from irlx.motion.rotation_vector import angular_rates, vector_rates
 
 Array = NDArray[np.float64]
 
@@ -40,11 +40,8 @@ class TurnCurve:
     @classmethod
     def through(cls, breaks: Array, bases: Array, jets: list[tuple[TurnJet, TurnJet]]) -> TurnCurve:
         """Curve whose pieces have the given jets at their ends; a piece turns less than pi from its base."""
-        pieces = [
-            quintic(_vector_jet(base, first), _vector_jet(base, last), width)
-            for base, (first, last), width in zip(bases, jets, np.diff(breaks), strict=True)
-        ]
-        return cls(breaks, bases, np.stack(pieces, axis=1))
+        start, end = (_vector_jets(bases, [jet[side] for jet in jets]) for side in (0, 1))
+        return cls(breaks, bases, quintic(start, end, np.diff(breaks)[:, None]))
 
     @property
     def widest(self) -> float:
@@ -59,16 +56,11 @@ class TurnCurve:
         vectors = Rotation.from_rotvec(self._curve(s)).as_matrix()
         return np.asarray(self.bases[self._piece(s)] @ vectors)
 
-    def rates(self, s: Array) -> Array:
-        """Derivative by s (N, 3): rotation vectors in the world frame."""
-        return self._in_world(s, angular_rate(self._curve(s), self._slope(s)))
-
-    def bends(self, s: Array) -> Array:
-        """Derivative of `rates` by s (N, 3)."""
-        return self._in_world(s, angular_bend(self._curve(s), self._slope(s), self._bend(s)))
-
-    def _in_world(self, s: Array, vectors: Array) -> Array:
-        return np.asarray(np.einsum("nij,nj->ni", self.bases[self._piece(s)], vectors))
+    def rates(self, s: Array) -> tuple[Array, Array]:
+        """Angular rate by s, a rotation vector in the world frame, and its derivative by s, each (N, 3)."""
+        rate, bend = angular_rates(self._curve(s), self._slope(s), self._bend(s))
+        bases = self.bases[self._piece(s)]
+        return (bases @ rate[:, :, None])[:, :, 0], (bases @ bend[:, :, None])[:, :, 0]
 
     def _piece(self, s: Array) -> NDArray[np.intp]:
         return np.clip(np.searchsorted(self.breaks, s, side="right") - 1, 0, len(self.bases) - 1)
@@ -86,6 +78,12 @@ class TurnCurve:
         return self._curve.derivative(2)
 
 
-def _vector_jet(base: Array, jet: TurnJet) -> Jet:
-    vector = np.asarray(Rotation.from_matrix(base.T @ jet.rotation).as_rotvec())
-    return Jet(vector, *vector_rates(vector, base.T @ jet.rate, base.T @ jet.bend))
+def _vector_jets(bases: Array, jets: list[TurnJet]) -> Jet:
+    """Rotation vectors (K, 3) from the bases (K, 3, 3) with their derivatives."""
+    to_base = np.transpose(bases, (0, 2, 1))
+    vectors = np.asarray(Rotation.from_matrix(to_base @ np.array([jet.rotation for jet in jets])).as_rotvec())
+    rates, bends = (
+        (to_base @ np.array(parts)[:, :, None])[:, :, 0]
+        for parts in ([jet.rate for jet in jets], [jet.bend for jet in jets])
+    )
+    return Jet(vectors, *vector_rates(vectors, rates, bends))

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.blocks import MoveBlock, WaitBlock
+from irlx.blocks import MoveBlock, PauseBlock, WaitBlock
 from irlx.pacing.demand import Demand
 from irlx.pacing.rows import MotionRows, PathPart
 from irlx.robot.kinematics import Kinematics
@@ -179,11 +179,13 @@ def _motion(rows: MotionRows) -> str:
     """The motion in the program's words."""
     if isinstance(rows.block, MoveBlock):
         return f"MOVE {rows.block.kind.value}"
+    if isinstance(rows.block, PauseBlock):
+        return "PAUSE"
     return "WAIT" if isinstance(rows.block, WaitBlock) else "RECONFIGURATION"
 
 
 def _way_of_pacing(rows: MotionRows, row: int) -> str:
-    if isinstance(rows.block, WaitBlock):
+    if isinstance(rows.block, WaitBlock | PauseBlock):
         return "the robot stands"
     if rows.stops and row == len(rows) - 1:
         return "hold tick of a stop"

@@ -75,7 +75,7 @@ class Lookahead:
 
     def _note(self, move: MoveBlock, where: Origin | None, why: str) -> None:
         stopping = None if where is None else self._locate(where)
-        self._notes.add(lost_blend(self._locate(move.origin), why, stopping))
+        self._notes.add(lost_blend(self._locate(move.origin), why, stopping, what="this stops it"))
 
 
 _TOO_MANY = f"at most {WINDOW} moves are joined"

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from irlx.blocks import (
     AskInput,
     AskInputChange,
+    AskJointBounds,
+    AskLastMove,
     AskManipulability,
     AskNearestPosture,
     AskPose,
@@ -19,16 +21,19 @@ from irlx.blocks import (
     CriterionBlock,
     FreezeBlock,
     LimitSwitchBlock,
+    MachineQuestion,
     MoveBlock,
     MoveKind,
     Origin,
+    PauseBlock,
     PoseTarget,
-    Question,
     ReconfigureBlock,
+    ToolBlock,
     WaitBlock,
+    WeightsBlock,
 )
 from irlx.diagnostics import Diagnostic, Place
-from irlx.pacing.answers import answer_of_posture
+from irlx.pacing.answers import answer_of_bounds, answer_of_last_move, answer_of_posture, way_of
 from irlx.pacing.beyond import posture_beyond, ticks_beyond
 from irlx.pacing.executed import Executed
 from irlx.pacing.inputs import answer_of_inputs
@@ -40,6 +45,7 @@ from irlx.pacing.path_moves import move_along_path
 from irlx.pacing.posture_left import posture_left, why_left
 from irlx.pacing.postures import asked_posture, posture_of_pose
 from irlx.pacing.reconfigure import reconfigured
+from irlx.pacing.refitting import refitted
 from irlx.pacing.rows import MotionRows
 from irlx.pacing.situation import PacingSetup, Situation
 from irlx.pacing.snap import snapped
@@ -65,8 +71,9 @@ class Pacer:
         self.options = Options()
         self.warnings: list[Diagnostic] = []
         self.notes = Notes(self.warnings)
+        self._last_way = (0.0, 0.0)
 
-    def answer(self, question: Question) -> tuple[float, ...]:
+    def answer(self, question: MachineQuestion) -> tuple[float, ...]:
         """Answer to a question of the interpreter, all blocks before it executed.
 
         Raises PacingError, IRL522, for the posture of a pose that none reaches.
@@ -78,6 +85,10 @@ class Pacer:
             return answer_of_inputs(question, setup.inputs, self.tick * setup.dt, setup.dt, self._locate)
         if isinstance(question, AskPose | AskManipulability):
             return answer_of_posture(question, self._setup.kinematics)
+        if isinstance(question, AskLastMove):
+            return answer_of_last_move(*self._last_way)
+        if isinstance(question, AskJointBounds):
+            return answer_of_bounds(self._situation.in_force().limits)
         situation = self._situation
         target, place = PoseTarget(question.position, question.orientation), self._locate(question.origin)
         near = np.array(question.near) if isinstance(question, AskNearestPosture) else None
@@ -97,6 +108,11 @@ class Pacer:
             self.warnings,
             self.notes,
         )
+
+    @property
+    def setup(self) -> PacingSetup:
+        """The robot as it is now: with the tool and weights that the program has given it."""
+        return self._setup
 
     def settled(self, block: Block) -> Block:
         """The block as it is executed here: bounds that mean the present posture lie exactly on it."""
@@ -125,7 +141,7 @@ class Pacer:
                     yield Executed(block, self.tick, None)
                     block = waiting.pop(0)
                 tick = self.tick
-                yield Executed(block, tick, self._moved(rows, motion.in_force), begins)
+                yield Executed(block, tick, self._move(rows, motion, begins), begins)
                 begins = True
             if motion.rest is not None:
                 waiting.insert(0, motion.rest)
@@ -148,11 +164,11 @@ class Pacer:
         """
         if isinstance(block, MoveBlock):
             motion = self._motion([block])
-            return self._moved(motion.rows[0], motion.in_force)
+            return self._move(motion.rows[0], motion)
         if isinstance(block, ReconfigureBlock):
             return self._reconfigure(block)
         place = self._locate(block.origin)
-        if isinstance(block, WaitBlock):
+        if isinstance(block, WaitBlock | PauseBlock):
             return self._wait(block, place)
         if isinstance(block, LimitSwitchBlock):
             self.warnings += check_limit(block, self._robot, self._setup.limits, self.q, place)
@@ -162,6 +178,9 @@ class Pacer:
             from irlx.pacing.criteria import check_criterion
 
             check_criterion(block.choice, self._robot, place)
+        if isinstance(block, ToolBlock | WeightsBlock):
+            self._setup = refitted(self._setup, block, place)
+            self._solver = TickSolver(self._setup.kinematics, self._qp)
         if isinstance(block, SwitchBlock):
             self.options = self.options.after(block, self.q)
         return None
@@ -180,6 +199,13 @@ class Pacer:
             return move_joints(situation, moves, in_force)
         return move_along_path(situation, moves, in_force)
 
+    def _move(self, rows: MotionRows | None, motion: Motion, begins: bool = True) -> MotionRows | None:
+        """`_moved` for a move, or a further part of one that had to stop on its way."""
+        way = way_of(rows, self._situation.pose[1], self._setup.dt)
+        before = (0.0, 0.0) if begins else self._last_way
+        self._last_way = (before[0] + way[0], before[1] + way[1])
+        return self._moved(rows, motion.in_force)
+
     def _moved(self, rows: MotionRows | None, in_force: LimitsInForce) -> MotionRows | None:
         """The rows of a motion with its limits, the robot now standing at their end."""
         if rows is None:
@@ -188,7 +214,7 @@ class Pacer:
         self.tick += rows.ticks
         return replace(rows, limits=in_force.limits)
 
-    def _wait(self, block: WaitBlock, place: Place) -> MotionRows | None:
+    def _wait(self, block: WaitBlock | PauseBlock, place: Place) -> MotionRows | None:
         setup = self._setup
         rows = waited(block, self.q, setup.dt, self.tick + 1, setup.kinematics, place, setup.resolution)
         return self._moved(rows, self._situation.in_force())

@@ -25,7 +25,6 @@ from irlx.pacing.path_motion import Failure, PacedPath, PathMotion, pace_path
 from irlx.pacing.posed import Pose, end_pose, posed
 from irlx.pacing.posture_term import PostureTerm
 from irlx.pacing.rows import MotionRows, PathPart, handed_out, held
-from irlx.pacing.shared_time import share_of_time
 from irlx.pacing.situation import Situation
 from irlx.promises import PATH_ORIENTATION, PATH_POSITION
 from irlx.robot.task import pose_errors
@@ -82,13 +81,9 @@ def _motion(
     in_force: LimitsInForce,
 ) -> Motion:
     block, place = moves[0], legs[0].place
-    if plan.points and block.law.duration is not None:
-        block = replace(block, law=replace(block.law, duration=share_of_time(legs[0], situation.pose)))
-        own = replace(legs[0].block, law=block.law)
-        plan = plan_chain([Leg(own, place)], *situation.pose, situation.dt)
     for note in plan.notes:
         situation.notes.add(note)
-    rest = _rest(moves[plan.legs], plan.points, block) if plan.points else None
+    rest = _rest(moves[plan.legs], plan) if plan.points else None
     drawn = postures_asked(situation, block, plan, in_force, place)
     if plan.ticks == 0:
         warn_of_posture_left(situation, drawn, situation.q, block, place)
@@ -103,19 +98,19 @@ def _motion(
     warn_of_posture_left(situation, drawn, paced.q[-1], block, place)
     rows = _rows(situation, block, plan, paced)
     touched = len(plan.ends)
-    handed = handed_out(rows, moves[:touched], plan.ends) if touched > 1 else [rows]
+    handed: list[MotionRows | None] = [rows]
+    if touched > 1:
+        handed = handed_out(rows, moves[:touched], plan.ends)
     return Motion(tuple(handed), in_force, rest)
 
 
-def _rest(block: MoveBlock, points: int, done: MoveBlock) -> MoveBlock:
-    """What is left of a move along a PATH behind its first `points` points, which `done` has carried out."""
+def _rest(block: MoveBlock, plan: PlannedChain) -> MoveBlock:
+    """What is left of a move along a PATH where the motion stops inside it."""
     course = block.path
     if course is None:
         raise TypeError("a motion stops inside a move only along a PATH")
-    law = block.law
-    if law.duration is not None and done.law.duration is not None:
-        law = replace(law, duration=law.duration - done.law.duration)
-    left = PathCourse(course.points[points:], course.reconfigurations[points:])
+    left = PathCourse(course.points[plan.points :], course.reconfigurations[plan.points :])
+    law = replace(block.law, duration=plan.time_left)
     return replace(block, law=law, course=left if left.points else None)
 
 

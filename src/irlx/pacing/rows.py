@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.blocks import MoveBlock, ReconfigureBlock, WaitBlock
+from irlx.blocks import MoveBlock, PauseBlock, ReconfigureBlock, WaitBlock
 from irlx.motion.time_law import TimeLaw
 from irlx.pacing.demand import Demand
 from irlx.pacing.posture_term import PostureTerm
@@ -54,7 +54,7 @@ class MotionRows:
     `limits` in force, None for the robot's own; `path`, None where no path was asked for.
     """
 
-    block: MoveBlock | ReconfigureBlock | WaitBlock
+    block: MoveBlock | ReconfigureBlock | WaitBlock | PauseBlock
     first_tick: int
     q: Array
     tool_position: Array
@@ -84,10 +84,13 @@ def held(rows: Array) -> Array:
     return np.concatenate([rows, rows[-1:]])
 
 
-def handed_out(rows: MotionRows, blocks: Sequence[MoveBlock], ends: Sequence[float]) -> list[MotionRows]:
+def handed_out(
+    rows: MotionRows, blocks: Sequence[MoveBlock], ends: Sequence[float]
+) -> list[MotionRows | None]:
     """Rows of joined moves, to each those up to the tick nearest to where it hands over to the next.
 
     `ends` are the path parameters of these places, the last one that of the stop, which all rows left go to.
+    None for a move so short that no row falls to it.
     """
     path = rows.path
     if path is None:
@@ -97,7 +100,7 @@ def handed_out(rows: MotionRows, blocks: Sequence[MoveBlock], ends: Sequence[flo
     lasts = np.maximum.accumulate([0, *cuts, len(rows)]).tolist()
     begins = [0.0, *ends]
     return [
-        _part(rows, path, block, (first, last), (begins[k], begins[k + 1]))
+        _part(rows, path, block, (first, last), (begins[k], begins[k + 1])) if last > first else None
         for k, (block, (first, last)) in enumerate(zip(blocks, pairwise(lasts), strict=True))
     ]
 

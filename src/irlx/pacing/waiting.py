@@ -7,7 +7,7 @@ from math import ceil
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.blocks import WaitBlock
+from irlx.blocks import PauseBlock, WaitBlock
 from irlx.diagnostics import Place, report
 from irlx.motion.whole_ticks import MOST_TICKS
 from irlx.pacing.errors import PacingError
@@ -25,7 +25,7 @@ def ticks_of_wait(duration: float, dt: float) -> int:
 
 
 def waited(
-    block: WaitBlock,
+    block: WaitBlock | PauseBlock,
     q: Array,
     dt: float,
     first_tick: int,
@@ -33,7 +33,7 @@ def waited(
     place: Place,
     resolution: Resolution = EVERY_TICK,
 ) -> MotionRows | None:
-    """Rows of a robot that stands at q (n,) for the time of a WAIT; None where it takes no tick.
+    """Rows of a robot that stands at q (n,) for the time of a WAIT or PAUSE; None where it takes no tick.
 
     Raises PacingError, IRL425, for a wait of too many ticks.
     """

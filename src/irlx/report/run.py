@@ -26,7 +26,8 @@ class Run:
     Arrays of N samples and n joints: `t` (N,) s; `q`, `qd`, `qdd` (N, n) rad | m and per s, s2, the
     rates being backward differences of the emitted q, from rest before tick 0; `tool` (N, 7) x y z in
     m and unit quaternion x y z w of the tool frame in the world; `block` (N,) id of the move.
-    `explanation` is that of the tick asked for with `explain_tick`, None where no motion has it.
+    `explanation` is that of the tick asked for with `explain_tick`, None where no motion has it;
+    `output` what the program wrote to STANDARD_OUT.
     """
 
     stream: JointStream
@@ -34,6 +35,7 @@ class Run:
     summary: Summary
     diagnostics: tuple[Diagnostic, ...]
     explanation: TickExplanation | None = None
+    output: str = ""
 
     @property
     def t(self) -> Array:

@@ -75,14 +75,22 @@ class Sizes(NamedTuple):
 class Kinematics:
     """Forward kinematics and Jacobian of the tool frame of one robot, and the conditions between its joints.
 
+    The tool frame is that of the tip, or lies at the pose `tool` in it.
+
     Joint vectors q have shape (n,), rad or m, in the order of `RobotDescription.axes`. Twists are
     (linear m, angular rad) in the tool frame. What a tick has to meet are m rows: the coordinates of the
     robot's task, then those of the constraints. Not safe for use by several threads at once: results
     of one call are kept in buffers of the object.
     """
 
-    def __init__(self, description: RobotDescription, constraints: Sequence[Constraint] = ()) -> None:
+    def __init__(
+        self,
+        description: RobotDescription,
+        constraints: Sequence[Constraint] = (),
+        tool: pin.SE3 | None = None,
+    ) -> None:
         self.description = description
+        self._tool = pin.SE3.Identity() if tool is None else tool
         self.constraints = tuple(constraints)
         self.task = Task(description.coordinates)
         self.model = pin.Model()
@@ -104,7 +112,18 @@ class Kinematics:
 
     def constrained(self, constraints: Sequence[Constraint]) -> Kinematics:
         """The same robot with conditions between its joints."""
-        return Kinematics(self.description, constraints)
+        return Kinematics(self.description, constraints, self._tool)
+
+    def with_tool(
+        self, position: tuple[float, float, float], orientation: tuple[float, float, float, float]
+    ) -> Kinematics:
+        """The same robot with its tool frame elsewhere on the tip; conditions between its joints stay.
+
+        `position` (m) and unit quaternion `orientation` (x, y, z, w) are those of the tool in the tip.
+        """
+        x, y, z, w = orientation
+        turn = pin.Quaternion(w, x, y, z).normalized().toRotationMatrix()
+        return Kinematics(self.description, self.constraints, pin.SE3(turn, np.array(position)))
 
     def _add_link(self, link: str, parent: int, in_parent: pin.SE3) -> None:
         """Add a link, welded to Pinocchio joint `parent` at `in_parent`, and all that hangs on it."""
@@ -114,7 +133,7 @@ class Kinematics:
             with suppress(RuntimeError, ValueError):
                 self.model.appendBodyToJoint(parent, _inertia(inertial), in_parent)
         if link == self.description.tip:
-            frame = pin.Frame(link, parent, 0, in_parent, pin.FrameType.OP_FRAME)
+            frame = pin.Frame(link, parent, 0, in_parent * self._tool, pin.FrameType.OP_FRAME)
             self._tip_frame = self.model.addFrame(frame)
         for joint in self._children.get(link, []):
             origin = in_parent * placement(joint.xyz, joint.rpy)

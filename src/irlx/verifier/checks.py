@@ -164,8 +164,8 @@ def _judged(
     robot = reference.robot if reference is not None and of_robot.status == OK else None
     start = None if robot is None or reference is None else reference.start
     relations = () if robot is None or reference is None else reference.relations
-    evidence = Evidence(outline, robot, start, relations)
     of_blocks = check_blocks(outline, may_lack_blocks)
+    evidence = Evidence(outline, robot, start, relations, blocks_fit=of_blocks.status != FAILED)
     no_blocks = "the check 'blocks' failed" if of_blocks.status == FAILED else of_blocks.detail
     no_robot = of_robot.detail if of_robot.status == NOT_CHECKED else "the check 'robot' failed"
     no_robot = "" if robot is not None else no_robot

@@ -7,29 +7,24 @@ from functools import cached_property
 
 import numpy as np
 
-from irlx.blocks import JointTarget, PoseTarget, Target
+from irlx.blocks import MoveKind
 from irlx.robot.description import RobotDescription
 from irlx.robot.relation import JointRelation
 from irlx.streams.joint_stream import Floats
+from irlx.verifier.demands import Demand, Placer, demands_of
 from irlx.verifier.findings.tally import Tally
-from irlx.verifier.geometry.forward import forward
-from irlx.verifier.geometry.rotations import from_quaternion
 from irlx.verifier.limits import LimitsInForce, limits_in_force
 from irlx.verifier.moves import MoveRows, moves_of
 from irlx.verifier.outline import Outline
-
-Pose = tuple[Floats, Floats]
-"""Position (3,) m and rotation (3, 3) of the tool."""
-
-BASE_FRAME = "R_BASE"
-"""The frame of targets that the verifier can place: the root of the robot."""
+from irlx.verifier.tools import tools_of
 
 
 @dataclass(frozen=True)
 class Evidence:
     """The outline of a stream with what follows from it, computed on first use.
 
-    `robot` is None where none is known or where it is not the stream's robot; `start` (n,) is the posture in
+    `robot` is None where none is known or where it is not the stream's robot; nothing is asked for by blocks
+    that do not fit the rows (`blocks_fit`); `start` (n,) is the posture in
     which its cell has it begin, None where no cell is given; `relations` between joints are its cell's.
     """
 
@@ -37,6 +32,7 @@ class Evidence:
     robot: RobotDescription | None
     start: Floats | None = None
     relations: tuple[JointRelation, ...] = ()
+    blocks_fit: bool = True
 
     @cached_property
     def moves(self) -> list[MoveRows]:
@@ -52,18 +48,37 @@ class Evidence:
         """Joint values (n,) of a row in which a block ends."""
         return np.array(self.outline.posture(row))
 
-    def target_pose(self, target: Target, start: Pose) -> Pose | None:
-        """Pose of a target or via point of a move that starts at a pose; None: its frame is not known."""
-        if isinstance(target, JointTarget):
-            assert self.robot is not None
-            positions, rotations = forward(self.robot, np.array([target.values], dtype=np.float64))
-            return positions[0], rotations[0]
-        if not isinstance(target, PoseTarget) or target.frame != BASE_FRAME:
-            return None
-        if target.orientation is None:
-            return np.array(target.position), start[1]
-        quaternion = np.array(target.orientation)
-        return np.array(target.position), from_quaternion(quaternion / np.linalg.norm(quaternion))
+    @cached_property
+    def placer(self) -> Placer:
+        """Finds where targets are, with the tools that the stream's blocks set."""
+        return Placer(self.robot, tools_of(self.outline.records))
+
+    @cached_property
+    def demands(self) -> dict[int, Demand]:
+        """What each move asks for, by its id."""
+        found = demands_of(self.outline, self.moves, self.placer) if self.blocks_fit else []
+        return {demand.move.block.id: demand for demand in found}
+
+    @cached_property
+    def chains(self) -> list[tuple[Demand, ...]]:
+        """Moves of the tool that run into each other, or along a PATH: from stop to stop."""
+        found, chain = [], list[Demand]()
+        for demand in self.demands.values():
+            chain.append(demand)
+            if not demand.passes:
+                block = demand.move.block
+                broken_off = block.blend is not None and not demand.move.finished
+                if block.kind is not MoveKind.PTP and (
+                    len(chain) > 1 or block.path is not None or broken_off
+                ):
+                    found.append(tuple(chain))
+                chain = []
+        return found
+
+    @cached_property
+    def chained(self) -> frozenset[int]:
+        """Ids of the moves in `chains`."""
+        return frozenset(demand.move.block.id for chain in self.chains for demand in chain)
 
     def tally(self, name: str, unit: str) -> Tally:
         """An empty tally for a check of this stream."""

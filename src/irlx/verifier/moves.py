@@ -2,31 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
-from irlx.blocks import (
-    Block,
-    FreezeBlock,
-    InputBlock,
-    JointIncrement,
-    JointRange,
-    JointTarget,
-    LimitSwitchBlock,
-    MoveBlock,
-    MoveKind,
-    PoseIncrement,
-    PoseTarget,
-    ReconfigureBlock,
-    SignalBlock,
-    SignalKind,
-    WaitBlock,
-)
-from irlx.promises import UNIT_LENGTH
+from irlx.blocks import MotionLaw, MoveBlock, PauseBlock, ReconfigureBlock, WaitBlock
 from irlx.streams.joint_stream import Integers
 from irlx.verifier.findings.finding import FAILED, NOT_CHECKED, OK, Check
 from irlx.verifier.outline import Outline
+from irlx.verifier.sanity import wrong_numbers
 
 
 @dataclass(frozen=True)
@@ -46,6 +31,30 @@ class MoveRows:
     def rows(self) -> Integers:
         """Indices of the rows of the move, hold rows included."""
         return np.arange(self.start + 1, self.last + 1)
+
+    @cached_property
+    def law(self) -> MotionLaw:
+        """The bounds of its motion, its override being counted in."""
+        return law_in_force(self.block.law)
+
+
+def law_in_force(law: MotionLaw) -> MotionLaw:
+    """The bounds that hold where an override scales time: rates by it, their changes by its powers."""
+    o = law.override
+    if o == 1.0:
+        return law
+    return replace(
+        law,
+        speed=law.speed * o,
+        acc=law.acc * o**2,
+        speed_ori=law.speed_ori * o,
+        acc_ori=law.acc_ori * o**2,
+        speed_ptp=law.speed_ptp * o,
+        acc_ptp=law.acc_ptp * o**2,
+        duration=None if law.duration is None else law.duration / o,
+        jerk=None if law.jerk is None else law.jerk * o**3,
+        override=1.0,
+    )
 
 
 def moves_of(outline: Outline) -> list[MoveRows]:
@@ -82,12 +91,12 @@ def _misfit(outline: Outline) -> tuple[int, str] | None:
     standing = lasts.get(0, 0)
     for due, record in enumerate(outline.records, 1):
         block = record.block
-        reason = _wrong_numbers(block, joints)
+        reason = wrong_numbers(block, joints)
         if reason:
             return record.tick, f"block {block.id}: {reason}"
         if block.id != due:
             return record.tick, f"block {block.id} stands where {due} is due: one is missing or added"
-        moves = isinstance(block, MoveBlock | ReconfigureBlock | WaitBlock)
+        moves = isinstance(block, MoveBlock | ReconfigureBlock | WaitBlock | PauseBlock)
         begins[block.id] = record.tick if moves else -1
         if record.tick != standing:
             late = f" (the samples end at {rows - 1})" if record.tick >= rows else ""
@@ -112,63 +121,3 @@ def _misplaced(found: list[tuple[int, int, int]], begins: dict[int, int]) -> tup
             return first, f"block {identity} was recorded at tick {begins[identity]} and begins at {first}"
         seen.add(identity)
     return None
-
-
-def _wrong_numbers(block: Block, joints: int) -> str:
-    """Why the numbers in a block do not fit a robot of n joints, or ''."""
-    ranges: list[JointRange] = []
-    if isinstance(block, MoveBlock):
-        ranges = [clause.range for clause in block.limits]
-        reason = _wrong_targets(block, joints)
-        if reason:
-            return reason
-    for posture in _postures_beside(block):
-        if len(posture.values) != joints:
-            return f"its posture has {len(posture.values)} values for {joints} joints"
-    if isinstance(block, LimitSwitchBlock) and block.range is not None:
-        ranges = [block.range]
-    if any(len(bounds.lower) != joints or len(bounds.upper) != joints for bounds in ranges):
-        return f"its limits are not those of {joints} joints"
-    if isinstance(block, WaitBlock) and not 0.0 <= block.duration < np.inf:
-        return f"it waits {block.duration} s"
-    if isinstance(block, SignalBlock | InputBlock) and not _fits(block.port.kind, block.value):
-        return f"its {block.port.name} is {block.value}, which is no {block.port.kind.value}"
-    if isinstance(block, FreezeBlock) and not all(1 <= joint <= joints for joint in block.joints):
-        return f"it freezes a joint outside 1..{joints}"
-    return ""
-
-
-def _fits(kind: SignalKind, value: float) -> bool:
-    if kind is SignalKind.BOOL:
-        return value in (0.0, 1.0)
-    return abs(value) < np.inf and (kind is SignalKind.REAL or value == round(value))
-
-
-def _wrong_targets(block: MoveBlock, joints: int) -> str:
-    """Why target and course of a move do not fit a robot of n joints or its kind, or ''."""
-    course = block.arc
-    if (course is not None) is not (block.kind is MoveKind.CIRCLE):
-        return f"a {block.kind.value} {'needs a' if course is None else 'has no'} course"
-    if course is not None and course.angle is not None and not 0.0 < abs(course.angle) < np.inf:
-        return f"it cannot turn by {course.angle} rad"
-    if course is not None and course.via_reconfiguration is not None and block.reconfiguration is None:
-        return "it has a posture for its via point and none for its end"
-    for target in block.targets:
-        if isinstance(target, JointTarget | JointIncrement) and len(target.values) != joints:
-            return f"its target has {len(target.values)} values for {joints} joints"
-        if isinstance(target, PoseTarget | PoseIncrement) and target.orientation is not None:
-            length = float(np.linalg.norm(target.orientation))
-            if not abs(length - 1.0) <= UNIT_LENGTH:
-                return f"its orientation is a quaternion of length {length:.6g}"
-    return ""
-
-
-def _postures_beside(block: Block) -> list[JointTarget]:
-    """Postures of a block other than the targets of a move."""
-    if isinstance(block, ReconfigureBlock):
-        return [block.target]
-    if not isinstance(block, MoveBlock):
-        return []
-    inner = () if block.path is None else block.path.reconfigurations
-    via = None if block.arc is None else block.arc.via_reconfiguration
-    return [posture for posture in (via, *inner, block.reconfiguration) if posture is not None]

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from irlx.diagnostics import Diagnostic
 from irlx.promises import LONGEST_TICK, SHORTEST_TICK
@@ -26,7 +27,8 @@ Scans = Callable[[], Iterator[ScanItem]]
 class Outline:
     """A stream without its rows: header, block records, stretches of rows of one block id.
 
-    Of S stretches: `ids`, first and last row (S,) each, and the posture in the last row, `ends` (S, n).
+    Of S stretches: `ids`, first and last row (S,) each, the posture in the last row, `ends` (S, n), and
+    whether that repeats the row before it bit by bit, `held` (S,); row 0 does.
     `rows` in all; `largest` |q|. `damage` is what ended the reading before the stream's end;
     `tick_fault` and `odd_value` are the first tick that is not the next one, and the first value that is
     no number.
@@ -38,6 +40,7 @@ class Outline:
     firsts: Integers
     lasts: Integers
     ends: Floats
+    held: NDArray[np.bool_]
     rows: int
     largest: float
     complete: bool
@@ -64,6 +67,10 @@ class Outline:
         """Joint values of a row in which a block ends: the next one begins where the last one stopped."""
         return tuple(self.ends[np.searchsorted(self.lasts, row)].tolist())
 
+    def stands(self, row: int) -> bool:
+        """Whether a row in which a block ends repeats the row before it."""
+        return bool(self.held[np.searchsorted(self.lasts, row)])
+
     def segments(self) -> Iterator[tuple[int, int, int]]:
         """Stretches of rows: (id, first row, last row), in order."""
         return zip(self.ids.tolist(), self.firsts.tolist(), self.lasts.tolist(), strict=True)
@@ -78,6 +85,8 @@ class _Draft:
         self.ids: list[int] = []
         self.firsts: list[int] = []
         self.ends: list[Floats] = []
+        self.held: list[bool] = []
+        self.before: Floats | None = None
         self.rows = 0
         self.largest = 0.0
         self.complete = False
@@ -93,15 +102,23 @@ class _Draft:
         if self.ids and self.ids[-1] == block[0]:
             starts = starts[1:]
         ends = [*(starts - 1).tolist(), len(block) - 1]
+        stands = self._stands(batch.q)
         if self.ids and ends[0] >= 0:
-            self.ends[-1] = batch.q[ends[0]].copy()
+            self.ends[-1], self.held[-1] = batch.q[ends[0]].copy(), bool(stands[ends[0]])
         for start, end in zip(starts.tolist(), ends[1:], strict=True):
             self.ids.append(int(block[start]))
             self.firsts.append(self.rows + start)
             self.ends.append(batch.q[end].copy())
+            self.held.append(bool(stands[end]))
         with np.errstate(invalid="ignore"):
             self.largest = max(self.largest, float(np.max(np.abs(batch.q))) if batch.q.size else 0.0)
         self.rows += len(block)
+
+    def _stands(self, q: Floats) -> NDArray[np.bool_]:
+        """Whether rows q (R, n) repeat the row before each of them bit by bit."""
+        rows = np.concatenate([q[:1] if self.before is None else self.before, q]).view(np.int64)
+        self.before = q[-1:].copy()
+        return np.asarray((rows[1:] == rows[:-1]).all(axis=1))
 
     def _judge(self, batch: RowBatch) -> None:
         due = np.arange(self.rows, self.rows + len(batch.ticks))
@@ -129,6 +146,7 @@ class _Draft:
             firsts,
             lasts,
             np.array(self.ends).reshape(len(firsts), self.header.joints),
+            np.array(self.held, dtype=np.bool_),
             self.rows,
             self.largest,
             self.complete,

@@ -15,6 +15,7 @@ from irlx.streams.joint_stream import Floats, Integers
 from irlx.streams.scan import RowBatch, ScanItem, StatedRates
 from irlx.verifier.geometry.forward import forward
 from irlx.verifier.outline import Outline, Scans
+from irlx.verifier.tools import Pose, ToolsInForce, tools_of
 
 PORTION = 4096
 """Rows looked at together: enough for numpy to be quick, little enough to be no matter of memory."""
@@ -52,7 +53,8 @@ class Rows:
     `q` (R, n) rad | m, `tool` (R, 7), `rates` as the file states them; differences `qd`, `qdd` (R, n) per s
     and s2, the robot resting before row 0. Arrays `postures` (R + 1, n), `positions` (R + 1, 3) m and
     `rotations` (R + 1, 3, 3) begin with the row before; for row 0 that is row 0 itself. Poses are those of
-    the verifier's own forward kinematics, and empty where no robot is known.
+    the verifier's own forward kinematics, and empty where no robot is known: those of the tip in `tips`, of
+    the tool in force in each row in `positions` and `rotations`.
     """
 
     first: int
@@ -64,6 +66,8 @@ class Rows:
     positions: Floats
     rotations: Floats
     outline: Outline
+    tips: Pose
+    tools: ToolsInForce
 
     def __len__(self) -> int:
         return len(self.qd)
@@ -81,6 +85,21 @@ class Rows:
     def place(self, row: int) -> int | None:
         """Index of a row of the stream in the arrays of R + 1 rows, None where it is not in this portion."""
         return row - self.first + 1 if self.first <= row < self.first + len(self) else None
+
+    def pose(self, place: int, block: int) -> Pose:
+        """Pose (position (3,), rotation (3, 3)) of a block's tool at a `place` in arrays of R + 1 rows."""
+        here = slice(place, place + 1)
+        number = np.array([self.tools.number(block)], dtype=np.int64)
+        position, rotation = self.tools.placed((self.tips[0][here], self.tips[1][here]), number)
+        return position[0].copy(), rotation[0].copy()
+
+    def before(self, stretch: Stretch) -> Pose:
+        """Poses (R', ..) of the stretch's own tool in the row before each of its rows."""
+        positions, rotations = self.positions[stretch.before], self.rotations[stretch.before]
+        if stretch.begins and self.tools.change:
+            positions, rotations = positions.copy(), rotations.copy()
+            positions[0], rotations[0] = self.pose(stretch.before.start, stretch.block)
+        return positions, rotations
 
     @cached_property
     def stretches(self) -> list[Stretch]:
@@ -104,6 +123,8 @@ def rows_of(scans: Scans, outline: Outline, robot: RobotDescription | None) -> I
     done = 0
     earlier: tuple[Floats, Floats] | None = None
     poses: tuple[Floats, Floats] | None = None
+    tools = tools_of(outline.records)
+    held = 0
     for portion in _portions(scans()):
         # A file that grows meanwhile is judged as it was.
         batch = portion.part(slice(0, outline.rows - done))
@@ -114,13 +135,16 @@ def rows_of(scans: Scans, outline: Outline, robot: RobotDescription | None) -> I
         postures = np.concatenate([before, q])
         qd = np.diff(postures, axis=0) / dt
         qdd = np.diff(qd, axis=0, prepend=slower) / dt
-        positions, rotations = np.zeros((0, 3)), np.zeros((0, 3, 3))
+        tips = np.zeros((0, 3)), np.zeros((0, 3, 3))
+        numbers = tools.numbers(batch.block)
         if robot is not None:
             own = forward(robot, q)
             known = poses if poses is not None else (own[0][:1], own[1][:1])
-            positions, rotations = (np.concatenate(pair) for pair in zip(known, own, strict=True))
-            poses = positions[-1:], rotations[-1:]
-        yield Rows(done, postures, qd, qdd, batch.tool, batch.rates, positions, rotations, outline)
+            tips = np.concatenate([known[0], own[0]]), np.concatenate([known[1], own[1]])
+            poses = tips[0][-1:], tips[1][-1:]
+        placed = tools.placed(tips, np.concatenate([[held], numbers])) if robot is not None else tips
+        held = int(numbers[-1])
+        yield Rows(done, postures, qd, qdd, batch.tool, batch.rates, *placed, outline, tips, tools)
         earlier = q[-1:], qd[-1:]
         done += len(q)
 

@@ -6,11 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from irlx.blocks import ArcCourse, MoveKind
-from irlx.verifier.evidence import Evidence, Pose
+from irlx.blocks import ArcCourse, MoveKind, Profile
+from irlx.verifier.demands import Place
+from irlx.verifier.evidence import Evidence
 from irlx.verifier.geometry.arcs import ArcWay, arc_shape
 from irlx.verifier.geometry.paths import LineWay
 from irlx.verifier.moves import MoveRows
+from irlx.verifier.tools import Pose
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,13 +31,13 @@ class Course:
     @property
     def speed(self) -> float:
         """Fastest programmed speed of the tool, m/s: on an arc ACC bounds the normal acceleration too."""
-        law = self.move.block.law
+        law = self.move.law
         return min(law.speed, float(np.sqrt(law.acc / self.flatness))) if self.flatness > 0.0 else law.speed
 
     @property
     def bounds(self) -> tuple[float, float]:
         """Largest speed and acceleration along the way, by s and s2: in m, or rad where the angle leads."""
-        law, way = self.move.block.law, self.way
+        law, way = self.move.law, self.way
         if not isinstance(way, LineWay) or way.angle == 0.0:
             return self.speed, law.acc
         if way.by_angle:
@@ -47,34 +49,41 @@ class Course:
     @property
     def shortest(self) -> float:
         """Shortest time from rest to rest that SPEED and ACC, or TIME, allow, s."""
-        least = self.move.block.law.duration or 0.0
+        least = self.move.law.duration or 0.0
         if self.way is None:
             return least
         # As numpy's numbers, which divide by zero.
         speed, acc, length = (np.float64(value) for value in (*self.bounds, self.way.length))
         if length == 0.0:
             return least
+        jerk = self.move.law.jerk if self.move.law.profile is Profile.S_CURVE and not self._by_angle else None
+        if jerk is not None:
+            return max(least, float(least_time(length, speed, acc, np.float64(jerk))))
         short = speed * speed >= length * acc
         return max(least, float(2.0 * np.sqrt(length / acc) if short else length / speed + speed / acc))
+
+    @property
+    def _by_angle(self) -> bool:
+        return not isinstance(self.way, LineWay) or self.way.by_angle
 
 
 def course_of(evidence: Evidence, move: MoveRows, start: Pose) -> Course:
     """The course of a move that starts at a pose of the tool."""
-    target = evidence.target_pose(move.block.target, start)
-    if target is None:
+    places = evidence.placer.all_of(move, Place(start, evidence.posture(move.start)))
+    poses = [place.pose for place in places if place.pose is not None]
+    target = poses[-1] if poses else None
+    if len(poses) < len(places) or target is None:
         return Course(move, None, None)
-    if move.block.kind is MoveKind.PTP:
+    if move.block.kind is MoveKind.PTP or move.block.path is not None:
         return Course(move, None, target)
     course = move.block.arc
     if course is None:
         return Course(move, LineWay(start, target), target)
-    return _arc(evidence, move, course, start, target)
+    return _arc(evidence, move, course, (start, poses[0], target))
 
 
-def _arc(evidence: Evidence, move: MoveRows, course: ArcCourse, start: Pose, target: Pose) -> Course:
-    via = evidence.target_pose(course.via, start)
-    if via is None:
-        return Course(move, None, None)
+def _arc(evidence: Evidence, move: MoveRows, course: ArcCourse, poses: tuple[Pose, Pose, Pose]) -> Course:
+    start, via, target = poses
     shape = arc_shape(start[0], via[0], target[0], course.angle)
     if shape is None:
         return Course(move, None, target)
@@ -83,3 +92,17 @@ def _arc(evidence: Evidence, move: MoveRows, course: ArcCourse, start: Pose, tar
     most_step = found.speed * shape.flatness * evidence.outline.header.dt
     way = ArcWay(shape, course, (start[1], via[1], goal[1]), most_step)
     return Course(move, way, goal, shape.flatness)
+
+
+def least_time(length: float, speed: float, acc: float, jerk: float) -> float:
+    """Shortest time, s, from rest to rest over a length, m, under bounds of speed, acceleration and jerk.
+
+    With the greatest speed v the acceleration lasts v/a + a/j, or, where it never gets to a, 2 sqrt(v/j).
+    """
+    ramp = speed / acc + acc / jerk if speed * jerk >= acc * acc else 2.0 * np.sqrt(speed / jerk)
+    if length >= speed * ramp:
+        return float(length / speed + ramp)
+    reached = 0.5 * (np.sqrt((acc * acc / jerk) ** 2 + 4.0 * length * acc) - acc * acc / jerk)
+    if reached * jerk >= acc * acc:
+        return float(2.0 * (reached / acc + acc / jerk))
+    return float(4.0 * np.cbrt(length / (2.0 * jerk)))

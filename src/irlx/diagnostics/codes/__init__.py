@@ -9,6 +9,7 @@ from irlx.diagnostics.codes.cell import CELL
 from irlx.diagnostics.codes.code import Code, Severity
 from irlx.diagnostics.codes.command import COMMAND
 from irlx.diagnostics.codes.data_lists import DATA_LISTS
+from irlx.diagnostics.codes.files import FILES
 from irlx.diagnostics.codes.lints import LINTS
 from irlx.diagnostics.codes.motion import MOTION
 from irlx.diagnostics.codes.names import NAMES
@@ -35,6 +36,7 @@ CATALOGUE: Mapping[str, Code] = MappingProxyType(
             MOTION,
             PACING,
             RUN,
+            FILES,
             CELL,
             STREAM,
         )

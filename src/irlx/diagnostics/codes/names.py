@@ -7,7 +7,11 @@ NAMES: tuple[Code, ...] = (
     error("IRL202", "'{name}' is declared twice", "remove or rename one of the two"),
     error("IRL203", "MOVE has no parameter '{name}'{near}"),
     error("IRL204", "unknown type '{name}'{near}", "declare it in TYPE before use"),
-    warning("IRL205", "port '{name}' is not declared", "declare it: VAR OUTPUT BOOL: name AT number;"),
+    warning(
+        "IRL205",
+        "port '{name}' is not declared",
+        "declare it: VAR OUTPUT BOOL: name AT number; irlx fmt does so",
+    ),
     error("IRL206", "unknown function '{name}'{near}"),
     error("IRL207", "unknown procedure '{name}'{near}", "declare it with PROCEDURE"),
     error(

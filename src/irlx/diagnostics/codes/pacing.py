@@ -95,12 +95,12 @@ PACING = (
     ),
     info(
         "IRL432",
-        "the move stops at its target instead of blending into the next one: {reason}",
+        "the move stops at {where} instead of blending: {reason}",
         "leave out C_CP and C_PASS where the stop is meant",
     ),
     info(
         "IRL433",
-        "the blend of {asked} mm reaches {used} mm: half of the shorter of both moves",
+        "the blend of {asked} mm at {where} is cut to {used} mm: half of the shorter way beside it",
         "ask for a smaller C_CP, or put the targets farther apart",
     ),
     error(

@@ -80,6 +80,17 @@ RUN = (
         "give it a TIMEOUT",
     ),
     error(
+        "IRL570",
+        "{name} has no orientation: the length of its quaternion is {length}",
+        "assign the whole orientation at once: {name}.ORI := ORIZYX(0, 180, 0)",
+    ),
+    error(
+        "IRL571",
+        "this tool frame does not go with the robot {robot}, whose task is {task} of the tool: joints would "
+        "move {lost} as well, for which nobody asks",
+        "turn the tool only about the axis that the robot turns it about",
+    ),
+    error(
         "IRL590",
         "this version of irlx reads {what} but does not execute it yet",
         "docs/reference/language.md lists what is executed",

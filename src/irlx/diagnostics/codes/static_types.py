@@ -16,7 +16,11 @@ STATIC_TYPES: tuple[Code, ...] = (
         "'{name}' is {found}, not {expected}",
         "a procedure is called by a statement of its own and has no value",
     ),
-    error("IRL251", "the constant '{name}' has no value", "write CONST type: name := value;"),
+    error(
+        "IRL251",
+        "the constant '{name}' has no value",
+        "write CONST type: name := value; a variable is declared below VAR",
+    ),
     error("IRL252", "{label} is chosen by an earlier label of this CASE"),
     warning(
         "IRL280",

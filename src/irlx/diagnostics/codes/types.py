@@ -1,4 +1,4 @@
-"""IRL22x: types and values."""
+"""IRL22x: types and values; IRL266, IRL267: files."""
 
 from irlx.diagnostics.codes.code import error
 
@@ -22,6 +22,12 @@ TYPES = (
         "IRL229",
         "these values could be {candidates}",
         "say which with a constructor, or use a declared variable",
+    ),
+    error("IRL266", "{channel} cannot be '{name}': {cause}"),
+    error(
+        "IRL267",
+        "a FILE cannot be {what}",
+        "use the variable itself in OPEN, READ, WRITE, CLOSE, or hand it to a VAR parameter",
     ),
     error("IRL230", "an orientation needs a quaternion of length 1, found length {length}"),
 )

@@ -6,6 +6,7 @@ from typing import Any
 
 from irlx.diagnostics import Related
 from irlx.language import tree
+from irlx.language.builtins import LAYOUT_BOUNDS
 from irlx.language.checking.context import NOTHING, Context, Typed
 from irlx.language.checking.names import Constant, Entry
 from irlx.language.checking.words import count
@@ -35,6 +36,10 @@ class Calls(Context):
 
     def variable_argument(self, node: tree.Argument, where: str, expected: Type | None) -> None:
         """An argument that the routine sets."""
+        raise NotImplementedError
+
+    def file_use(self, node: tree.Argument, what: str) -> None:
+        """Remember that a variable of type FILE may be used; `what` is '' where a routine has it."""
         raise NotImplementedError
 
     def function_call(self, node: tree.FunctionCall) -> Typed:
@@ -69,6 +74,8 @@ class Calls(Context):
         return Typed(signature.result or UNKNOWN)
 
     def _built_in(self, node: tree.FunctionCall, signature: Signature) -> Typed:
+        if signature.name == "EOF" and not node.arguments:
+            self.facts.standard.add("IN")
         found = self.arguments(signature, node.arguments, node)
         if signature.like_first:
             return Typed(found[0].type) if found else NOTHING
@@ -94,6 +101,8 @@ class Calls(Context):
             self.unknown_arguments(arguments)
             return Typed(type)
         value = tuple([part.value for part in found]) if found else None
+        if len(found) > 1:
+            self.status(type, arguments[1], found[1])
         if type is ORIENTATION and value is not None:
             self.unit_length(node, value)
         return Typed(type, value)
@@ -125,6 +134,9 @@ class Calls(Context):
             return NOTHING
         if parameter.by_reference:
             where = f"the VAR parameter '{parameter.name}' of {signature.name}"
+            if not parameter.name:
+                where = signature.name
+            self.file_use(argument, signature.name if not parameter.name else "")
             self.variable_argument(argument, where, parameter.types[0])
             return NOTHING
         if len(parameter.types) == 1:
@@ -140,17 +152,30 @@ class Calls(Context):
             if isinstance(argument, tree.FormattedValue):
                 self.formatted(argument)
             else:
-                self.fitted(argument, UNKNOWN)
+                trial = self.trial(lambda argument=argument: self.fitted(argument, UNKNOWN))  # type: ignore[misc]
+                # A FILE may stand there: what takes it is not known.
+                self.keep(trial._replace(findings=[f for f in trial.findings if f.code != "IRL267"]))
 
     def formatted(self, node: tree.FormattedValue) -> Typed:
         """A value with its layout; a precision is for numbers."""
         found = self.typed(node.value)
-        self.whole(node.width)
+        self._bounded(node.width, "width")
         if node.precision is not None:
-            self.whole(node.precision)
+            self._bounded(node.precision, "precision")
             if found.type is not UNKNOWN and not is_number(found.type):
                 self.mismatch(node.value, "a number before :width:precision", found.type.name)
         return found
+
+    def _bounded(self, node: tree.Expression, what: str) -> None:
+        """A number of a layout, within its bounds where the text tells it."""
+        value, most = self.whole(node).value, LAYOUT_BOUNDS[what]
+        if isinstance(value, int) and not isinstance(value, bool) and not 0 <= value <= most:
+            data: dict[str, Any] = {
+                "param": f"the {what} of WRITE",
+                "expected": f"0 to {most:,}",
+                "value": str(value),
+            }
+            self.add("IRL505", node, **data)
 
     def whole(self, node: tree.Expression) -> Typed:
         """An expression that must be an INT."""

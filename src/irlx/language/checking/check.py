@@ -60,7 +60,7 @@ def check_types(
         check.data_list(ImportedList(source, root))
         return check.outcome()
     check = type_check(source, joints_of(root.declarations, joints), frames, complete=complete)
-    check.modules = modules
+    check.modules, check.is_program = modules, isinstance(root, tree.Program)
     check.declare(root.declarations, lists)
     for part in root.declarations:
         if isinstance(part, tree.ProcedureDeclaration | tree.FunctionDeclaration):
@@ -76,7 +76,7 @@ def type_check(
 ) -> TypeCheck:
     """A type check that has looked at nothing yet."""
     types = known_types(joints.number)
-    check = TypeCheck(source, Names(types, system_names(types, frames)))
+    check = TypeCheck(source, Names(types, system_names(types, frames, joints.number)))
     check.joints, check.complete = joints, complete
     return check
 
@@ -89,6 +89,7 @@ class TypeCheck(Statements, Declarations):
         self._program = names
         self._routines: list[RoutineScope] = []
         self._entries: list[Entry] = []
+        self._channels: dict[str, tree.StandardChannel] = {}
 
     def inside(self, routine: Routine) -> None:
         """Look at the declarations and the body of a routine."""

@@ -1,11 +1,19 @@
-"""Findings on types that follow from a mistake in the text, which is told already."""
+"""Findings that follow from a mistake which is told already."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+from itertools import groupby
 
 from irlx.diagnostics import Diagnostic
+from irlx.language import tree
 from irlx.language.parsing.driver import MAX_ERRORS
+
+_DECLARING = (tree.Program, tree.Module, tree.ProcedureDeclaration, tree.FunctionDeclaration)
+_MISSING_VAR = "should VAR stand above its declaration? Other constants of the list are set as well"
+_SEVERAL = 3
+"""So many constants of one list are not set by mistake."""
 
 
 def standing_alone(findings: list[Diagnostic], syntax: Iterable[Diagnostic]) -> list[Diagnostic]:
@@ -24,3 +32,88 @@ def standing_alone(findings: list[Diagnostic], syntax: Iterable[Diagnostic]) -> 
     if not torn:
         return findings
     return [f for f in findings if f.place is None or (f.place.file, f.place.line) not in torn]
+
+
+def without_missing_var(
+    findings: Sequence[Diagnostic], root: tree.Node, syntax: Iterable[Diagnostic]
+) -> list[Diagnostic]:
+    """Findings without those on what stands below CONST only because a VAR is missing or misspelt.
+
+    Of constants without a value and what follows them in their list only the first is told; nothing where a
+    mistake in the text stands among them. Three constants of a list that are set are meant to be variables:
+    the first one is told. A constant that is set in several places is told once.
+    """
+    told = sorted(((_constant(finding), finding) for finding in findings), key=_offset)
+    if not any(key for key, _ in told):
+        return list(findings)
+    errors = [one.place.span.start for one in syntax if one.is_error and one.place and one.place.span]
+    lists = [_Constants(run, errors, told) for run in _const_lists(root)]
+    seen: set[str] = set()
+    kept = []
+    for key, finding in told:
+        is_set = key != "" and finding.code == "IRL211"
+        if not (is_set and key in seen) and not any(each.hides(key, finding) for each in lists):
+            first = is_set and any(finding is each.first for each in lists)
+            kept.append(replace(finding, help=_MISSING_VAR) if first else finding)
+        seen.update({key} if is_set else ())
+    return kept
+
+
+def _offset(told: tuple[str, Diagnostic]) -> int:
+    place = told[1].place
+    return place.span.start if place is not None and place.span is not None else 0
+
+
+def _const_lists(root: tree.Node) -> Iterator[list[tree.ConstDeclaration]]:
+    """Declarations of constants that follow each other, of the text and of its routines."""
+    for node in tree.walk(root):
+        parts = node.declarations if isinstance(node, _DECLARING) else ()
+        for is_const, run in groupby(parts, lambda part: isinstance(part, tree.ConstDeclaration)):
+            if is_const:
+                yield [one for one in run if isinstance(one, tree.ConstDeclaration)]
+
+
+def _constant(finding: Diagnostic) -> str:
+    """Casefolded name of the constant that a finding is about, or ''."""
+    place, data = finding.place, finding.data
+    of_constant = finding.code == "IRL251" or "a constant" in (data.get("kind"), data.get("found"))
+    if not of_constant or finding.code not in ("IRL211", "IRL249", "IRL251"):
+        return ""
+    if place is None or place.text is None or place.span is None:
+        return ""
+    return place.text.text[place.span.start : place.span.end].casefold()
+
+
+class _Constants:
+    """A list of constants, which of them are likely variables, and the first finding that shows it.
+
+    `first` is None where nothing shows it, or a mistake in the text that is told anyway.
+    """
+
+    def __init__(
+        self,
+        run: Sequence[tree.ConstDeclaration],
+        errors: Sequence[int],
+        told: Sequence[tuple[str, Diagnostic]],
+    ) -> None:
+        start, end = run[0].span.start, run[-1].span.end
+        torn = min((error for error in errors if start <= error <= end), default=end)
+        bare = [part for part in run if any(one.initial is None for one in part.constants)]
+        begin = min(torn, bare[0].span.start if bare else end)
+        self._likely = {one.name.key for part in run if part.span.end > begin for one in part.constants}
+        names = {one.name.key for part in run for one in part.constants}
+        valueless = [finding for key, finding in told if finding.code == "IRL251" and key in names]
+        settings = [(key, finding) for key, finding in told if finding.code == "IRL211" and key in names]
+        self.first: Diagnostic | None = None
+        if torn < end:
+            return
+        if valueless:
+            self.first = valueless[0]
+        elif len({key for key, _ in settings}) >= _SEVERAL:
+            self.first, self._likely = settings[0][1], names
+        else:
+            self._likely = set()
+
+    def hides(self, key: str, finding: Diagnostic) -> bool:
+        """Whether a finding on a constant follows from what is told already."""
+        return key in self._likely and finding is not self.first

@@ -34,6 +34,10 @@ class Facts:
     """What lints need to know of a program, gathered on the way: values at limits and targets of moves."""
 
     limits: list[tuple[tree.LimitSwitch | tree.WithLimit, Settled, Settled]] = field(default_factory=list)
+    files: list[tuple[str, Entry, tree.Name]] = field(default_factory=list)
+    """What is done with variables of type FILE: a word such as OPEN, the variable, its name there."""
+    standard: set[str] = field(default_factory=set)
+    """Directions of the standard channels that are used, IN or OUT."""
     targets: dict[int, tuple[Type, Settled]] = field(default_factory=dict)
     """Types and values of the targets of the main MOVEs, by the identity of their nodes."""
 
@@ -63,6 +67,10 @@ class Context:
         """Type of an expression that must be of exactly one of several types."""
         raise NotImplementedError
 
+    def function_call(self, node: tree.FunctionCall) -> Typed:
+        """Type of a call."""
+        raise NotImplementedError
+
     def part(self, type: Type, node: tree.Designator) -> Type:
         """Type of the part of a value that the selectors of a designator lead to."""
         raise NotImplementedError
@@ -74,6 +82,12 @@ class Context:
     def lint(self, code: str, node: tree.Node, *, related: tuple[Related, ...] = (), **data: Any) -> None:
         """Add a finding that is no mistake by itself."""
         self.lints.append(report(code, self.place(node), related=related, **data))
+
+    def status(self, type: Type, node: tree.Node, found: Typed) -> None:
+        """The value of the field STATUS of a ROBTARGET; one other than 0 says more than is looked at."""
+        is_number = isinstance(found.value, int) and not isinstance(found.value, bool)
+        if type is self.names.types.get("robtarget") and is_number and found.value != 0:
+            self.lint("IRL312", node, status=found.value)
 
     def mismatch(self, node: tree.Node, expected: str, found: str) -> None:
         """Add the finding on a value of another type than is expected."""

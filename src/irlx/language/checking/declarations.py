@@ -5,32 +5,36 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
+from irlx.diagnostics import Related
 from irlx.language import tree
+from irlx.language.checking.channels import Channels
 from irlx.language.checking.context import NOTHING, Typed
 from irlx.language.checking.names import Constant, Entry, Names
 from irlx.language.checking.type_forms import TypeForms
 from irlx.language.data_lists import ImportedList
 from irlx.language.references import Access, Reference
 from irlx.language.symbols import Routine, Symbol, SymbolKind
-from irlx.language.types import BOOL, INT, REAL, UNKNOWN, Parameter, Signature, Type, same_type
+from irlx.language.types import BOOL, INT, REAL, UNKNOWN, Parameter, Signature, Type, holds_files, same_type
 
 _SIGNAL_TYPES = (BOOL, INT, REAL)
 _FURTHER_DOWN = "; it is declared further down"
 _OF_A_LIST = "; it comes from a data list and is a variable, of which constants know nothing"
 
 
-class Declarations(TypeForms):
+class Declarations(TypeForms, Channels):
     """Declares what a program, module or routine declares.
 
     Without `complete`, values that are missing prove nothing: the text may have been left out.
     """
 
     complete = True
+    is_program = False
+    _channels: dict[str, tree.StandardChannel]
     modules: Mapping[str, Mapping[str, Symbol]] = MappingProxyType({})
     """What modules export, as far as they are known, by casefolded names."""
 
     def declare(self, declarations: Sequence[tree.Declaration], lists: Sequence[ImportedList] = ()) -> None:
-        """Constants and types in the order of the text, signatures, data lists, signals, then variables."""
+        """Constants, types in the order of the text, signatures, data lists, signals, variables; channels."""
         self._announce(declarations, lists)
         for part in declarations:
             self._first(part)
@@ -47,8 +51,10 @@ class Declarations(TypeForms):
             elif isinstance(part, tree.Export):
                 for name in part.names:
                     self._mention(name, "change")
-            elif isinstance(part, tree.StandardChannel):
+        for part in declarations:
+            if isinstance(part, tree.StandardChannel):
                 self._mention(part.channel, "change")
+                self._standard(part)
 
     def _first(self, part: tree.Declaration) -> None:
         """Declare what everything else may use."""
@@ -92,6 +98,14 @@ class Declarations(TypeForms):
             elif isinstance(part, tree.ConstDeclaration):
                 self.announced.update((constant.name.key, _FURTHER_DOWN) for constant in part.constants)
 
+    def _standard(self, part: tree.StandardChannel) -> None:
+        """A standard channel, which is said once."""
+        first = self._channels.setdefault(part.direction, part)
+        if first is not part:
+            related = (Related("said here first", self.place(first)),)
+            self.add("IRL202", part, related=related, name=f"STANDARD_{part.direction}")
+        self.standard_channel(part, in_program=self.is_program)
+
     def _mention(self, name: tree.Name, access: Access) -> None:
         entry = self.names.value(name.key)
         symbol = entry.symbol if entry is not None else self.names.type_symbol(name.key)
@@ -109,6 +123,9 @@ class Declarations(TypeForms):
         text: ImportedList | None = None,
     ) -> None:
         type = self.type_of(form)
+        if holds_files(type) and (kind == "constant" or text is not None):
+            self.add("IRL267", form, what="a constant" if kind == "constant" else "part of a data list")
+            type = UNKNOWN
         for variable in variables:
             found = NOTHING
             if variable.initial is not None:
@@ -191,8 +208,15 @@ class Declarations(TypeForms):
         for parameter in routine.parameters:
             type = self.type_of(parameter.type)
             by_reference = parameter.mode == "VAR"
+            if holds_files(type) and not by_reference:
+                # Told once, and not for every call as well.
+                by_reference = True
+                self.add("IRL267", parameter, what="a parameter by value")
             parameters += [Parameter(name.name, (type,), by_reference) for name in parameter.names]
         result = self.type_of(routine.result) if isinstance(routine, tree.FunctionDeclaration) else None
+        if result is not None and holds_files(result) and isinstance(routine, tree.FunctionDeclaration):
+            self.add("IRL267", routine.result, what="the result of a function")
+            result = UNKNOWN
         signature = Signature(routine.name.name, tuple(parameters), result, len(parameters))
         kind: SymbolKind = "procedure" if result is None else "function"
         self._enter(routine.name, kind, routine, result or UNKNOWN, signature=signature)

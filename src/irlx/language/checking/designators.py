@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.language import tree
+from irlx.language.builtins import BARE_FUNCTIONS
 from irlx.language.checking.context import NOTHING, Context, Typed
 from irlx.language.checking.names import Entry, port_entry
 from irlx.language.checking.words import count
@@ -20,10 +21,12 @@ from irlx.language.types import (
     Record,
     Type,
     field_names,
+    holds_files,
     longest_field,
     same_type,
 )
 
+FOLLOWED = "a system variable that the robot follows"
 NOT_A_VALUE = {"procedure": "a procedure", "robot": "a robot"}
 
 
@@ -46,14 +49,18 @@ class Designators(Context):
     def designated(self, node: tree.Designator, access: Access = "read") -> Typed:
         """Type of a designator; a function without parameters is called by its bare name."""
         entry = self.entry(node.base, access)
+        if entry is None and node.base.key in BARE_FUNCTIONS and not node.selectors:
+            return self.function_call(tree.FunctionCall(node.span, node.base, ()))
         if entry is None:
             self._indices(node.selectors)
             return NOTHING
         if entry.signature is not None or entry.kind in NOT_A_VALUE:
             return self._routine(entry, node)
-        if not node.selectors:
-            return Typed(entry.type, entry.value)
-        return Typed(self.part(entry.type, node))
+        type = self.part(entry.type, node) if node.selectors else entry.type
+        if holds_files(type):
+            self.add("IRL267", node, what="copied")
+            return NOTHING
+        return Typed(type, None if node.selectors else entry.value)
 
     def _routine(self, entry: Entry, node: tree.Designator) -> Typed:
         signature = entry.signature
@@ -180,9 +187,13 @@ class Designators(Context):
             "constant": "a constant",
             "input": "an input",
             "output": "an output",
+            "followed": FOLLOWED,
             "procedure": "a procedure",
             "function": "a function",
         }
+        if entry is None and inner.base.key in BARE_FUNCTIONS:
+            self.add("IRL249", node, where=where, found="a function")
+            return
         if entry is not None and entry.kind in fixed:
             self.designated(inner)
             self.add("IRL249", node, where=where, found=fixed[entry.kind], related=self.declared_here(entry))

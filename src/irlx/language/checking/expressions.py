@@ -15,10 +15,12 @@ from irlx.language.checking.operators import (
     DIVISIONS,
     INT_LIMIT,
     LOGIC,
+    aggregate_type,
     binary_type,
     binary_value,
     unary_type,
     unary_value,
+    values_in_parentheses,
 )
 from irlx.language.checking.parentheses import Parentheses
 from irlx.language.checking.pascal import both_readings
@@ -96,9 +98,10 @@ class Expressions(Designators, Parentheses, Calls):
         while isinstance(left, tree.Binary):
             chain.append(left)
             left = left.left
-        found = self._leftmost(left, chain[-1].op)
+        found, right = self._leftmost(left, chain[-1])
         for binary in reversed(chain):
-            found = self._applied(binary, found)
+            found = self._applied(binary, found, right)
+            right = None
         if inside:
             return found
         if self._unlike_pascal and node.op in LOGIC:
@@ -106,11 +109,12 @@ class Expressions(Designators, Parentheses, Calls):
         self._unlike_pascal = outer
         return found
 
-    def _applied(self, node: tree.Binary, left: Typed) -> Typed:
+    def _applied(self, node: tree.Binary, left: Typed, right: Typed | None) -> Typed:
+        """The result of an operator; `right` is the operand on that side where it has been looked at."""
         op = node.op
         if op in _SHORT:
             return self._short_circuit(node, left)
-        right = self._right(node)
+        right = right or self._right(node, left.type)
         result = binary_type(op, left.type, right.type)
         if result is None and op in COMPARISONS and CHAR in (left.type, right.type):
             # A literal of one sign is ordered where it stands beside a CHAR.
@@ -134,15 +138,25 @@ class Expressions(Designators, Parentheses, Calls):
             return Typed(result)
         return self._in_range(node, Typed(result, binary_value(op, left.value, right.value, result)))
 
-    def _leftmost(self, left: tree.Expression, op: str) -> Typed:
-        if op in _SHORT and isinstance(left, tree.Aggregate | tree.Paren):
-            return self.fitted(left, BOOL)
-        return self.typed(left)
+    def _leftmost(self, left: tree.Expression, node: tree.Binary) -> tuple[Typed, Typed | None]:
+        """The first operand of a chain; with it the second one where that tells what the first is."""
+        if node.op in _SHORT and isinstance(left, tree.Aggregate | tree.Paren):
+            return self.fitted(left, BOOL), None
+        values = values_in_parentheses(left)
+        if not values or node.op in _SHORT or values_in_parentheses(node.right):
+            return self.typed(left), None
+        right = self._right(node, UNKNOWN)
+        type = aggregate_type(node.op, right.type, values, on_left=True)
+        return (self.typed(left) if type is None else self.fitted(left, type)), right
 
-    def _right(self, node: tree.Binary) -> Typed:
+    def _right(self, node: tree.Binary, left: Type) -> Typed:
         right = node.right
         if node.op in _SHORT and isinstance(right, tree.Aggregate | tree.Paren):
             return self.fitted(right, BOOL)
+        values = values_in_parentheses(right)
+        type = aggregate_type(node.op, left, values, on_left=False) if values else None
+        if type is not None:
+            return self.fitted(right, type)
         return self._binary(right, inside=True) if isinstance(right, tree.Binary) else self.typed(right)
 
     def _compared(self, node: tree.Binary, left: Type, right: Type) -> None:
@@ -155,11 +169,11 @@ class Expressions(Designators, Parentheses, Calls):
         self._operand(node.left, left)
         if left.value is (node.op == "OR"):
             # The right side has no value to go wrong.
-            trial = self.trial(lambda: self._right(node))
+            trial = self.trial(lambda: self._right(node, BOOL))
             findings = [finding for finding in trial.findings if finding.code not in _OF_VALUES]
             right = self.keep(trial._replace(findings=findings))
         else:
-            right = self._right(node)
+            right = self._right(node, BOOL)
         self._operand(node.right, right)
         return Typed(BOOL)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from irlx.language import tree
+from irlx.language.builtins import MOVE_PARAMETERS
 from irlx.language.checking.context import Settled, Typed
 from irlx.language.checking.type_forms import TypeForms
 from irlx.language.types import (
@@ -24,15 +25,18 @@ _PARAMETER_TYPES: dict[str, Type] = {"c_pass": BOOL, "profile": STRING, "circ_or
 
 _WORDS = {"profile": ("TRAPEZOID", "S_CURVE"), "circ_ori": ("VIA", "END")}
 _POSITIVE = frozenset(
-    {"speed", "acc", "time", "speed_ori", "acc_ori", "speed_ptp", "acc_ptp", "jerk", "weight"}
+    {"speed", "acc", "time", "speed_ori", "acc_ori", "speed_ptp", "acc_ptp", "override", "weight"}
 )
-_SHARES = frozenset({"speed_ptp", "acc_ptp"})
+_NOT_NEGATIVE = frozenset({"jerk", "c_cp", "c_ptp"})
+_SHARES = frozenset({"speed_ptp", "acc_ptp", "override", "c_ptp"})
 
 LIMIT_TYPES = {
     "POSITION": ("main_joint_min", "main_joint_max"),
     "SPEED": ("main_joint_speed_min", "main_joint_speed_max"),
     "ACCELERATION": ("main_joint_accel_min", "main_joint_accel_max"),
 }
+_FIXED_JOINTS = 6
+"""A robot with more joints has many postures near each other for one pose."""
 _TOLERANCE = Record("TOLERANCE", tuple((name, REAL) for name in ("dx", "dy", "dz", "da", "db", "dc")))
 
 
@@ -44,9 +48,9 @@ class Motion(TypeForms):
 
     def _targets(self, move: tree.Move) -> tuple[Type, ...]:
         if move.incremental:
-            return POSE, POSITION
-        types = self.names.types
-        return POSE, POSITION, types["robtarget"], types["main_joint"], types["joint"]
+            # Along a path joint values would count from points whose postures nobody knows.
+            return (POSE, POSITION) if move.path else (POSE, POSITION, *self._postures())
+        return POSE, POSITION, self.names.types["robtarget"], *self._postures()
 
     def _postures(self) -> tuple[Type, ...]:
         return self.names.types["main_joint"], self.names.types["joint"]
@@ -54,28 +58,46 @@ class Motion(TypeForms):
     def move(self, move: tree.Move) -> None:
         """Targets, parameters and clauses of a MOVE."""
         candidates = self._targets(move)
+        types = []
         for target in move.targets:
             found = self._listed(target, candidates) if move.path else self._target(target, candidates)
+            types.append(found.type)
+            self._posture_left_open(move, target, found)
             if self.in_main:
                 self.facts.targets[id(target)] = found.type, self._settled(target, found)
         for param in move.params:
-            self._parameter(param, _PARAMETER_TYPES.get(param.name.key, REAL))
+            known = REAL if param.name.key in MOVE_PARAMETERS else UNKNOWN
+            self._parameter(param, _PARAMETER_TYPES.get(param.name.key, known))
             if param.name.key == "angle" and move.kind == "CIRCLE":
                 self._angle(param)
         for clause in move.clauses:
             match clause:
                 case tree.WithLimit():
                     self.limits(clause)
+                case tree.WithReconfiguration() if move.path:
+                    self._postures_of_path(clause, types)
                 case tree.WithReconfiguration(targets=targets):
                     for posture in targets:
-                        if move.path:
-                            self._listed(posture, self._postures())
-                        else:
-                            self.one_of(posture, self._postures())
+                        self.one_of(posture, self._postures())
                 case tree.WithCriterion():
                     self.criterion(clause)
                 case tree.WithTolerance(bands=bands):
                     self._tolerance(bands)
+
+    def _postures_of_path(self, clause: tree.WithReconfiguration, points: list[Type]) -> None:
+        """One posture for each point, where both are written one by one or in arrays."""
+        found = [self._listed(posture, self._postures()).type for posture in clause.targets]
+        targets, postures = sum(map(_number, points)), sum(map(_number, found))
+        if postures != targets and UNKNOWN not in (*points, *found):
+            self.add("IRL405", clause, targets=targets, postures=postures)
+
+    def _posture_left_open(self, move: tree.Move, target: tree.Expression, found: Typed) -> None:
+        """Tell of a ROBTARGET that is reached in any posture."""
+        joints = self.joints.number
+        if joints is None or joints <= _FIXED_JOINTS or found.type is not self.names.types["robtarget"]:
+            return
+        if not any(isinstance(clause, tree.WithReconfiguration) for clause in move.clauses):
+            self.lint("IRL313", target, joints=joints)
 
     def _target(self, target: tree.Expression, candidates: tuple[Type, ...]) -> Typed:
         if isinstance(target, tree.Aggregate):
@@ -112,6 +134,8 @@ class Motion(TypeForms):
         elif isinstance(value, int | float) and not isinstance(value, bool):
             if key in _POSITIVE and not value > 0:
                 self.add("IRL505", param.value, param=shown, expected="greater than 0", value=f"{value:g}")
+            elif key in _NOT_NEGATIVE and not value >= 0:
+                self.add("IRL505", param.value, param=shown, expected="0 or more", value=f"{value:g}")
             elif key in _SHARES and value > 100:
                 self.add("IRL505", param.value, param=shown, expected="at most 100 %", value=f"{value:g}")
 
@@ -156,3 +180,8 @@ class Motion(TypeForms):
     def reconfiguration(self, node: tree.Reconfiguration) -> None:
         """The posture of RECONFIGURATION."""
         self.one_of(node.target, self._postures())
+
+
+def _number(type: Type) -> int:
+    """How many targets or postures a value of a PATH is."""
+    return type.size if isinstance(type, Array) else 1

@@ -13,10 +13,11 @@ from irlx.language.types import (
     POSE,
     REAL,
     STRING,
-    UNKNOWN,
     Signature,
     Type,
     built_in_functions,
+    joint_bounds,
+    joint_weights,
 )
 
 Constant: TypeAlias = "bool | int | float | str | tuple[Constant | None, ...]"
@@ -27,14 +28,14 @@ _SYSTEM_TYPES: dict[str, Type] = {
     "r_tool": POSE,
     "r_c_pass": BOOL,
     "r_profile": STRING,
-    "r_jbd": UNKNOWN,
-    "r_weights": UNKNOWN,
 }
-"""Types of the system variables that are no REAL."""
+"""Types of the system variables that are no REAL, without those that depend on the robot."""
 
 _READ_ONLY = frozenset(
-    {"r_robtarget_act", "r_joint_act", "r_move_time", "r_distance_forw", "r_distance_back"}
+    {"r_robtarget_act", "r_joint_act", "r_move_time", "r_distance_forw", "r_distance_back", "r_jbd"}
 )
+_FOLLOWED = frozenset({"r_tool", "r_weights"})
+"""What the robot follows: only assignments set it."""
 
 
 @dataclass(slots=True)
@@ -89,16 +90,18 @@ class Names:
         return found or (self.outer.type_symbol(key) if self.outer else None)
 
 
-def system_names(types: dict[str, Type], frames: Collection[str]) -> Names:
-    """The outermost names: system variables and the frames of a cell."""
+def system_names(types: dict[str, Type], frames: Collection[str], joints: int | None = None) -> Names:
+    """The outermost names: system variables of a robot of a number of joints, and the frames of a cell."""
     names = Names(types)
-    for key, type in _SYSTEM_TYPES.items():
-        names.values[key] = Entry("variable", type)
+    of_robot = {
+        "r_robtarget_act": types["robtarget"],
+        "r_joint_act": types["joint"],
+        "r_jbd": joint_bounds(types),
+        "r_weights": joint_weights(joints),
+    }
     for key in SYSTEM_VARIABLES:
-        if key not in names.values:
-            names.values[key] = Entry("system" if key in _READ_ONLY else "variable", REAL)
-    names.values["r_robtarget_act"].type = types["robtarget"]
-    names.values["r_joint_act"].type = types["joint"]
+        kind = "system" if key in _READ_ONLY else "followed" if key in _FOLLOWED else "variable"
+        names.values[key] = Entry(kind, of_robot.get(key) or _SYSTEM_TYPES.get(key, REAL))
     for frame in frames:
         names.values.setdefault(frame.casefold(), Entry("constant", POSE))
     return names

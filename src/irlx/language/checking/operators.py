@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from irlx.language import tree
 from irlx.language.checking.names import Constant
 from irlx.language.types import (
     BOOL,
@@ -68,6 +69,29 @@ def binary_type(op: str, left: Type, right: Type) -> Type | None:
     if left is UNKNOWN or right is UNKNOWN:
         return BOOL if op in COMPARISONS or op in LOGIC else UNKNOWN
     return _RESULTS.get((op, left.name, right.name))
+
+
+def aggregate_type(op: str, other: Type, values: int, *, on_left: bool) -> Type | None:
+    """Type of several values in parentheses beside an operand of a type, None where none or several would do.
+
+    `values` is how many there are; `on_left` says on which side of the operator they stand.
+    """
+    if other is UNKNOWN:
+        return UNKNOWN
+    found = [
+        type
+        for type in (POSITION, ORIENTATION, POSE)
+        if ((op, type.name, other.name) if on_left else (op, other.name, type.name)) in _RESULTS
+    ]
+    fitting = [type for type in found if len(type.fields) == values] or found
+    return fitting[0] if len(fitting) == 1 else None
+
+
+def values_in_parentheses(node: tree.Expression) -> int:
+    """How many values stand in parentheses where there are several, else 0."""
+    while isinstance(node, tree.Paren):
+        node = node.value
+    return len(node.items) if isinstance(node, tree.Aggregate) else 0
 
 
 def unary_type(op: str, operand: Type) -> Type | None:

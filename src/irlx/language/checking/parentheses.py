@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from math import hypot
 
+from irlx.diagnostics import SourceText
 from irlx.language import tree
 from irlx.language.checking.context import NOTHING, Context, Trial, Typed
-from irlx.language.checking.names import Constant
+from irlx.language.checking.names import Constant, Names
 from irlx.language.checking.words import count
 from irlx.language.types import ORIENTATION, REAL, UNKNOWN, Array, Record, Type, is_number, same_type
 
@@ -16,6 +17,10 @@ _NO_FIT = frozenset({"IRL222", "IRL223"})
 
 class Parentheses(Context):
     """Types of values in parentheses."""
+
+    def __init__(self, source: SourceText, names: Names) -> None:
+        super().__init__(source, names)
+        self._attempted: dict[tuple[int, tuple[str, ...]], Trial] = {}
 
     def in_parentheses(self, node: tree.Aggregate | tree.Paren, expected: Type | None) -> Typed:
         """Type of one or more values in parentheses where a type is expected, or None."""
@@ -74,6 +79,8 @@ class Parentheses(Context):
             return Typed(expected)
         if isinstance(expected, Record) and not expected.pattern:
             parts = [self.fitted(item, type) for item, (_, type) in zip(items, expected.fields, strict=True)]
+            if len(parts) > 1:
+                self.status(expected, items[1], parts[1])
         else:
             element = expected.element if isinstance(expected, Array) else REAL
             parts = [self.fitted(item, element) for item in items]
@@ -100,6 +107,14 @@ class Parentheses(Context):
                 self.mismatch(node, " or ".join(type.name for type in candidates), found.type.name)
                 return NOTHING
             return found
+        # Attempts inside attempts would take for ever: what is found once holds in all of them.
+        key = id(node), tuple([type.name for type in candidates])
+        known = self._attempted.get(key)
+        if known is None:
+            known = self._attempted[key] = self.trial(lambda: self._one_of_values(node, candidates))
+        return self.keep(known)
+
+    def _one_of_values(self, node: tree.Aggregate, candidates: tuple[Type, ...]) -> Typed:
         likely = [type for type in candidates if _takes(type, len(node.items))]
         closed = [type for type in likely if not _is_open(type)]
         trials = [self._attempt(node, type) for type in closed]

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 from irlx.language import tree
 from irlx.language.builtins import PROCEDURES
 from irlx.language.checking.case_labels import twice_chosen
 from irlx.language.checking.channels import Channels
+from irlx.language.checking.designators import FOLLOWED
 from irlx.language.checking.motion import Motion
 from irlx.language.references import Reference
 from irlx.language.types import BOOL, CHAR, INT, REAL, STRING, UNKNOWN, Type, is_number, same_type
@@ -22,6 +24,7 @@ _KINDS = {
     "output": "an output",
     "robot": "a robot",
     "system": "a system variable",
+    "followed": "a system variable",
 }
 
 
@@ -52,6 +55,10 @@ class Statements(Motion, Channels):
         found = self.fitted(node.value, type)
         if entry is not None:
             entry.set(found.value, whole=not node.target.selectors)
+        *outer, last = node.target.selectors or (None,)
+        if isinstance(last, tree.Field) and last.key == "status":
+            whole = replace(node.target, selectors=tuple(outer))
+            self.status(self.trial(lambda: self.typed(whole)).typed.type, node.value, found)
 
     def _if(self, node: tree.If) -> None:
         for branch in node.branches:
@@ -69,6 +76,8 @@ class Statements(Motion, Channels):
 
     def _for(self, node: tree.For) -> None:
         type, entry = self.set_target(node.variable)
+        if entry is not None and entry.kind == "followed":
+            self.add("IRL249", node.variable, where="this statement", found=FOLLOWED)
         if entry is not None:
             entry.set(None, whole=False)
         if not is_number(type) and type is not UNKNOWN:

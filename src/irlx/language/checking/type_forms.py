@@ -23,6 +23,7 @@ from irlx.language.types import (
     Type,
     ambiguous_field,
     built_in_functions,
+    joint_bounds,
     joint_type,
     known_types,
 )
@@ -140,6 +141,9 @@ class TypeForms(Expressions):
         self.names.types[key] = type
         if key == "main_joint":
             self._joints_defined(type)
+        bounds = self.names.value("r_jbd") if key in ("main_joint_min", "main_joint_max") else None
+        if bounds is not None:
+            bounds.type = joint_bounds(self.names.types)
 
     def _joints_defined(self, main: Type) -> None:
         types = self.names.types

@@ -4,27 +4,58 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, TypeAlias
 
 from irlx.diagnostics import SourceText, Span
+from irlx.language import tree
+from irlx.language.format.ports import DeclaredPorts
+from irlx.language.format.reading import Reading
 from irlx.language.lexing import Lexed, lex
-from irlx.language.parser import Parse, parse
+from irlx.language.source import source_text
 
 __all__ = ["what_is_lost"]
 
+_Root: TypeAlias = "tree.Program | tree.Module | tree.DataList"
 _SPELLED = frozenset({"NAME", "INT", "REAL", "STRING"})
 
 
-def what_is_lost(before: SourceText, parsed: Parse, after: SourceText) -> str:
-    """What of a text is not the same in its formatted form, or '' where all is."""
-    again = parse(after)
-    if any(finding.code.startswith("IRL1") for finding in again.findings) or again.tree != parsed.tree:
+def what_is_lost(before: Reading, after: Reading, ports: DeclaredPorts) -> str:
+    """What of a text is not the same in its formatted form, or '' where all is.
+
+    Nothing but the declarations of `ports` may be there that was not before.
+    """
+    faulty = any(finding.code.startswith("IRL1") for finding in after.parsed.findings)
+    if faulty or _without(after.parsed.tree, ports.nodes) != before.parsed.tree:
         return "the meaning of the program"
-    old, new = lex(before), lex(after)
-    if _spellings(old) != _spellings(new):
+    old, new = before.parsed.lexed, after.parsed.lexed
+    added = _spellings(lex(source_text("", ports.written))) if ports.written else []
+    if not _differs_by(_spellings(old), _spellings(new), added):
         return "the spelling of a name or a literal"
-    if _comments(before, old.comments) != _comments(after, new.comments):
+    if _comments(before.source, old.comments) != _comments(after.source, new.comments):
         return "every comment"
     return ""
+
+
+def _without(root: _Root | None, nodes: Sequence[tree.Declaration]) -> _Root | None:
+    """A tree without declarations that all must be in it, else None."""
+    if root is None or not nodes:
+        return root
+    left: list[Any] = list(root.declarations)
+    for node in nodes:
+        if node not in left:
+            return None
+        left.remove(node)
+    return replace(root, declarations=tuple(left))
+
+
+def _differs_by(old: list[str], new: list[str], added: list[str]) -> bool:
+    """Whether `new` is `old` with `added` in one place."""
+    if not added:
+        return old == new
+    same = next((i for i, (one, other) in enumerate(zip(old, new, strict=False)) if one != other), len(old))
+    places = range(max(same - len(added), 0), same + 1)
+    return any(new == [*old[:place], *added, *old[place:]] for place in places)
 
 
 def _spellings(lexed: Lexed) -> list[str]:

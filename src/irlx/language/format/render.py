@@ -66,8 +66,10 @@ class _Renderer:
         stack.append((0, True, doc))
         while stack:
             indent, broken, top = stack.pop()
-            if isinstance(top, tuple):
-                stack.extend((indent, broken, part) for part in reversed(top))
+            if isinstance(top, str):
+                self._text(top)
+            elif isinstance(top, tuple):
+                stack.extend([(indent, broken, part) for part in reversed(top)])
             elif isinstance(top, Indent):
                 stack.append((indent + 2, broken, top.doc))
             elif isinstance(top, Here):
@@ -83,10 +85,8 @@ class _Renderer:
                 self._leaf(indent, broken, top)
         self._new_line(0)
 
-    def _leaf(self, indent: int, broken: bool, leaf: str | Line | Hard | Pad | Remark) -> None:
-        if isinstance(leaf, str):
-            self._text(leaf)
-        elif isinstance(leaf, Pad):
+    def _leaf(self, indent: int, broken: bool, leaf: Line | Hard | Pad | Remark) -> None:
+        if isinstance(leaf, Pad):
             self._text(" " * leaf.width)
         elif isinstance(leaf, Remark):
             self._remark(leaf, indent)
@@ -172,6 +172,12 @@ class _Renderer:
                 todo.append((broken, after))
                 continue
             broken, top = todo.pop()
+            if isinstance(top, str):
+                room -= len(top)
+                continue
+            if isinstance(top, tuple):
+                todo.extend([(broken, part) for part in reversed(top)])
+                continue
             parts = _parts(broken, top, following)
             if parts is not None:
                 todo.extend(reversed(parts))
@@ -190,8 +196,6 @@ class _Renderer:
 
 def _parts(broken: bool, doc: Doc | _Rest, following: bool) -> list[tuple[bool, Doc | _Rest]] | None:
     """What a document that holds others consists of, each with whether its lines are line ends."""
-    if isinstance(doc, tuple):
-        return [(broken, part) for part in doc]
     if isinstance(doc, Indent | Here):
         return [(broken, doc.doc)]
     if isinstance(doc, Group):
@@ -210,8 +214,6 @@ def _ends_line(doc: Doc | _Rest) -> bool:
 
 
 def _width(doc: Doc | _Rest) -> int:
-    if isinstance(doc, str):
-        return len(doc)
     if isinstance(doc, Pad):
         return doc.width
     # A comment, with the blank before it.

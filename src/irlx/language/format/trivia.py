@@ -135,7 +135,10 @@ def _gaps(text: str, tokens: Sequence[Token], comments: Sequence[Span]) -> list[
         while index < len(comments) and comments[index].start < start:
             inside.append(comments[index])
             index += 1
-        gaps.append(_gap(text, Span(end, start), inside, previous, token is _END))
+        if inside:
+            gaps.append(_gap(text, Span(end, start), inside, previous, token is _END))
+        else:
+            gaps.append(_Gap(last=text.count("\n", end, start)))
         end, previous = token.end_pos or 0, token.type
     return gaps
 

@@ -1,5 +1,5 @@
 """Lints: what is allowed and seldom meant (LANG-73)."""
 
-from irlx.language.lints.lints import lints_of
+from irlx.language.lints.lints import first_of_each, lints_of
 
-__all__ = ["lints_of"]
+__all__ = ["first_of_each", "lints_of"]

@@ -139,9 +139,15 @@ def _is_closed_later(driver: Driver) -> bool:
 
 
 def _report_extra_end(driver: Driver) -> None:
-    """Report an END word that is too many, and leave it out with its ``;``."""
-    kind = driver.token.type
-    driver.report("IRL108", token_span(driver.token), word=kind, opener=_OPENER_OF[kind])
+    """Report an END word that is too many, and leave it out with its ``;``.
+
+    One in the place of a missing END is one mistake, which is told already.
+    """
+    kind, span = driver.token.type, token_span(driver.token)
+    before = driver.findings[-1] if driver.findings else None
+    instead = before is not None and before.code == "IRL107" and before.place == driver.place(span)
+    if not instead:
+        driver.report("IRL108", span, word=kind, opener=_OPENER_OF[kind])
     driver.complete = False
     driver.index += 1
     if kind == "UNTIL":

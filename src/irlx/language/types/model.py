@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import TypeAlias
 
 
@@ -75,6 +75,14 @@ UNKNOWN = Simple("an unknown type")
 def is_number(type: Type) -> bool:
     """Whether a type is INT or REAL."""
     return type is INT or type is REAL
+
+
+@cache
+def holds_files(type: Type) -> bool:
+    """Whether a type is FILE or has parts of it: such values are not copied."""
+    if isinstance(type, Record):
+        return any(holds_files(part) for _, part in type.fields)
+    return holds_files(type.element) if isinstance(type, Array) else type is FILE
 
 
 def same_type(found: Type, expected: Type) -> bool:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from irlx.language.types.model import (
     ANY_BOUNDS,
     BOOL,
@@ -63,7 +65,7 @@ _FURTHER: dict[str, Type] = {
 def predefined_types(joints: int) -> dict[str, Type]:
     """Types that a running program knows, by casefolded name, for a robot of this number of joints."""
     types = _SIMPLE | {key: joint_record(key, joints) for key in JOINT_RECORDS}
-    return types | {"char": CHAR, "character": CHAR} | _postures(types["main_joint"], joints)
+    return types | {"char": CHAR, "character": CHAR, "file": FILE} | _postures(types["main_joint"], joints)
 
 
 def known_types(joints: int | None) -> dict[str, Type]:
@@ -86,6 +88,17 @@ def joint_record(key: str, joints: int | None) -> Record:
     if joints is None:
         return Record(key.upper(), (), pattern)
     return _reals(key.upper(), *(pattern.format(number) for number in range(1, joints + 1)))
+
+
+def joint_bounds(types: Mapping[str, Type]) -> Record:
+    """Type of R_JBD: the two bounds of JOINTLIMIT, as the program or the language defines them."""
+    lower, upper = types["main_joint_min"], types["main_joint_max"]
+    return Record("JOINT_BOUNDS", (("LOWER", lower), ("UPPER", upper)))
+
+
+def joint_weights(joints: int | None) -> Array:
+    """Type of R_WEIGHTS: one REAL a joint."""
+    return Array((ANY_BOUNDS if joints is None else (1, joints),), REAL)
 
 
 def joint_type(main: Type) -> Record:

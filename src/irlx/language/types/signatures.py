@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from irlx.language.types.model import CHAR, INT, REAL, STRING, UNKNOWN, Type
+from irlx.language.types.model import BOOL, CHAR, FILE, INT, REAL, STRING, UNKNOWN, Type
 from irlx.language.types.predefined import ORIENTATION, POSE, POSITION
 
 
@@ -82,5 +82,6 @@ def built_in_functions(types: Mapping[str, Type]) -> dict[str, Signature]:
         _signature("MANIPULABILITY", REAL, postures),
         _signature("CLEARANCE", REAL, postures, UNKNOWN, optional=1),
         _signature("POSTURE", main, places, UNKNOWN, optional=1),
+        Signature("EOF", (Parameter("", (FILE,), by_reference=True),), BOOL, 0),
     ]
     return {signature.name.casefold(): signature for signature in found}

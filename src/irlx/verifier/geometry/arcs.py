@@ -138,8 +138,8 @@ class ArcWay:
         to_via, from_via = self._turns
         return np.where(
             before,
-            to_via.off(_eased(share / part), rotations, before),
-            from_via.off(1.0 - _eased((1.0 - share) / (1.0 - part)), rotations, ~before),
+            to_via.off(eased(share / part), rotations, before),
+            from_via.off(1.0 - eased((1.0 - share) / (1.0 - part)), rotations, ~before),
         )
 
     def _rounds(self, angles: Floats) -> Floats:
@@ -155,9 +155,14 @@ class ArcWay:
         return np.asarray(found)
 
 
-def _eased(way: Floats) -> Floats:
+def eased(way: Floats) -> Floats:
     """Share of a turn (R,) at a share of its way: steady over the first half, coming to rest in the second.
 
     With rate 4/3 up to 1/2, falling linearly to 0 at 1: u = 4/3 x, then 1 - 4/3 (1 - x)^2.
     """
     return np.asarray(np.where(way < 0.5, 4.0 / 3.0 * way, 1.0 - 4.0 / 3.0 * (1.0 - way) ** 2))
+
+
+def eased_rates(way: float) -> tuple[float, float]:
+    """First and second derivative of `eased` at a share of its way."""
+    return (4.0 / 3.0, 0.0) if way < 0.5 else (8.0 / 3.0 * (1.0 - way), -8.0 / 3.0)

@@ -12,31 +12,36 @@ from irlx.blocks import (
     CriterionBlock,
     CyclicBlock,
     FreezeBlock,
+    JointIncrement,
     JointTarget,
     MoveBlock,
+    PoseIncrement,
     PoseTarget,
     ReconfigureBlock,
+    ToolBlock,
 )
 from irlx.promises import CLOSURE, RETURN, TOUCH
-from irlx.verifier.evidence import Evidence, Pose
+from irlx.verifier.evidence import Evidence
 from irlx.verifier.findings.finding import NOT_CHECKED, Check
 from irlx.verifier.geometry.rotations import angle_between
 from irlx.verifier.moves import MoveRows
 from irlx.verifier.rows import Rows, Stretch
+from irlx.verifier.tools import Pose
 from irlx.verifier.way import course_of
 
 _LED_AWAY = (
-    "a limit was met, or a RECONFIGURATION, a frozen joint, a criterion or joint values led away"
-    " from the posture"
+    "a limit was met, or a RECONFIGURATION, a frozen joint, a criterion, joint values or another tool led"
+    " away from the posture"
 )
 
 
 @dataclass(frozen=True)
 class _Return:
-    """A move that may come back to the pose of CYCLICSTART, whose row is `start`."""
+    """A move that may come back to the pose of CYCLICSTART, whose row is `start` and whose block `option`."""
 
     move: MoveRows
     start: int
+    option: int
     led_away: bool
 
 
@@ -54,6 +59,7 @@ class ClosureChecks:
         self._tally = evidence.tally("cyclic closure", "rad|m")
         self._returns = _possible_returns(evidence)
         self._starts = {found.start for found in self._returns.values()}
+        self._ids = {found.start: found.option for found in self._returns.values()}
         self._poses: dict[int, list[Pose]] = {}
         self._moves = {move.block.id: move for move in evidence.moves if move.last > move.start}
         self._at_start: Pose | None = None
@@ -67,7 +73,7 @@ class ClosureChecks:
         for start in sorted(self._starts):
             place = rows.place(start)
             if place is not None:
-                own = rows.positions[place].copy(), rows.rotations[place].copy()
+                own = rows.pose(place, self._ids[start])
                 self._poses.setdefault(start, []).append(own)
         self._watch_positions(rows)
         for stretch in rows.stretches:
@@ -75,17 +81,23 @@ class ClosureChecks:
             if move is None or (found is None and move.last not in self._starts):
                 continue
             if stretch.begins or self._at_start is None:
-                before = stretch.before.start
-                self._at_start = rows.positions[before].copy(), rows.rotations[before].copy()
+                self._at_start = rows.pose(stretch.before.start, stretch.block)
             if found is not None:
                 self._watch_limits(rows, stretch)
             if stretch.ends:
-                goal = course_of(self._evidence, move, self._at_start).goal
+                goal = self._goal(move, self._at_start)
                 if move.last in self._starts and goal is not None:
                     # Where the tool was told to stand counts as where it stands.
                     self._poses.setdefault(move.last, []).append(goal)
                 if found is not None and goal is not None:
                     self._end(int(stretch.rows[-1]), found, goal)
+
+    def _goal(self, move: MoveRows, start: Pose) -> Pose | None:
+        """Where a move that starts at a pose, or where the one before was to end, is told to stop."""
+        demand = self._evidence.demands[move.block.id]
+        if demand.passes or demand.follows:
+            return None if demand.passes else demand.end.pose
+        return course_of(self._evidence, move, start).goal
 
     def _watch_positions(self, rows: Rows) -> None:
         """Keep the first row behind each CYCLICSTART in which a joint met a position limit, which may have
@@ -163,29 +175,30 @@ def _possible_returns(evidence: Evidence) -> dict[int, _Return]:
     moves = {move.block.id: move for move in evidence.moves}
     found: dict[int, _Return] = {}
     start: int | None = None
-    led_away = False
+    option, led_away = 0, False
     criteria: set[str] = set()
     for record in evidence.outline.records:
         block = record.block
         if isinstance(block, CyclicBlock):
             start, led_away = record.tick if block.active else None, False
+            option = block.id
         if isinstance(block, CriterionBlock):
             criteria = criteria - {block.name} | ({block.name} if block.choice is not None else set())
         led_away = led_away or bool(criteria) or _leads_away(block)
         if start is None or _reconfigures(block) or not isinstance(block, MoveBlock):
             continue
         move = moves[block.id]
-        if isinstance(block.target, PoseTarget) and move.finished and move.last > move.start:
-            found[block.id] = _Return(move, start, led_away)
+        to_pose = isinstance(block.target, PoseTarget | PoseIncrement)
+        if to_pose and move.finished and move.last > move.start and not evidence.demands[block.id].passes:
+            found[block.id] = _Return(move, start, option, led_away)
     return found
 
 
 def _leads_away(block: Block) -> bool:
-    to_joints = isinstance(block, MoveBlock) and isinstance(block.target, JointTarget)
+    to_joints = isinstance(block, MoveBlock) and isinstance(block.target, JointTarget | JointIncrement)
     added = isinstance(block, MoveBlock) and bool(block.criteria)
-    return (
-        to_joints or added or _reconfigures(block) or (isinstance(block, FreezeBlock) and bool(block.joints))
-    )
+    frozen = isinstance(block, FreezeBlock) and bool(block.joints)
+    return to_joints or added or frozen or isinstance(block, ToolBlock) or _reconfigures(block)
 
 
 def _reconfigures(block: Block) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from irlx.blocks import JointTarget, MoveKind
+from irlx.blocks import MoveKind
 from irlx.promises import JOINT_LINE
 from irlx.streams.joint_stream import Floats
 from irlx.verifier.evidence import Evidence
@@ -21,7 +21,7 @@ class JointMoveChecks:
         self._moves = {
             move.block.id: move
             for move in evidence.moves
-            if move.block.kind is MoveKind.PTP and move.last > move.start
+            if move.block.kind is MoveKind.PTP and move.last > move.start and not self._is_joined(move)
         }
         self._straight = evidence.tally("PTP straight", "rad|m")
         self._progress = evidence.tally("PTP progress", "rad|m")
@@ -31,9 +31,15 @@ class JointMoveChecks:
             if move.block.kind is MoveKind.PTP:
                 self._add_goal(move)
 
+    def _is_joined(self, move: MoveRows) -> bool:
+        """Whether it runs from or into another PTP: then it need not be straight all the way."""
+        demand = self._evidence.demands[move.block.id]
+        return demand.passes or demand.follows
+
     def _add_goal(self, move: MoveRows) -> None:
-        if isinstance(move.block.target, JointTarget) and move.finished:
-            target = np.array(move.block.target.values)
+        demand = self._evidence.demands[move.block.id]
+        target = demand.targets[-1].posture
+        if target is not None and move.finished and not demand.passes:
             miss = np.abs(self._evidence.posture(move.last) - target)
             self._goal.add(np.array([move.last]), miss[None], JOINT_LINE)
 

@@ -6,10 +6,12 @@ import numpy as np
 
 from irlx.blocks import ReconfigureBlock
 from irlx.promises import PATH_ORIENTATION, PATH_POSITION, PROGRAM_EXCESS
-from irlx.verifier.evidence import Evidence, Pose
+from irlx.verifier.evidence import Evidence
 from irlx.verifier.findings.finding import Check
 from irlx.verifier.geometry.rotations import angle_between
+from irlx.verifier.moves import law_in_force
 from irlx.verifier.rows import Rows, Stretch
+from irlx.verifier.tools import Pose
 
 
 class ReconfigurationChecks:
@@ -22,7 +24,7 @@ class ReconfigurationChecks:
         self._orientation = evidence.tally("reconfiguration orientation", "rad")
         self._speed = evidence.tally("reconfiguration speed", "rad/s|m/s")
         self._laws = {
-            record.block.id: record.block.law
+            record.block.id: law_in_force(record.block.law)
             for record in evidence.outline.records
             if isinstance(record.block, ReconfigureBlock)
         }
@@ -36,8 +38,7 @@ class ReconfigurationChecks:
             if stretch.block not in self._ids:
                 continue
             if stretch.begins or self._held is None:
-                before = stretch.before.start
-                self._held = rows.positions[before].copy(), rows.rotations[before].copy()
+                self._held = rows.pose(stretch.before.start, stretch.block)
             positions, rotations = rows.positions[stretch.after], rows.rotations[stretch.after]
             off = np.linalg.norm(positions - self._held[0], axis=1)
             self._position.add(stretch.rows, off, PATH_POSITION)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.blocks import FreezeBlock, WaitBlock
+from irlx.blocks import FreezeBlock, PauseBlock, WaitBlock
 from irlx.promises import TICK_SHARE
 from irlx.streams.joint_stream import Floats
 from irlx.verifier.evidence import Evidence
@@ -15,11 +15,12 @@ from irlx.verifier.rows import Rows, Stretch
 
 class StopChecks:
     """The last row of every motion repeats the row before it: the robot stands, with a tick to show it. Rows
-    before the first motion all repeat the start posture."""
+    before the first motion all repeat the start posture. A move that passes its target does not stop."""
 
     def __init__(self, evidence: Evidence) -> None:
         self._outline = evidence.outline
         self._tally = evidence.tally("stops", "rad|m")
+        self._passing = _passing(evidence)
 
     def take(self, rows: Rows) -> None:
         """Add a portion."""
@@ -29,7 +30,7 @@ class StopChecks:
             unfinished = last == outline.rows - 1 and not outline.complete
             if stretch.block == 0:
                 self._add(rows, stretch, 0)
-            elif stretch.ends and not unfinished:
+            elif stretch.ends and not unfinished and stretch.block not in self._passing:
                 self._add(rows, stretch, len(stretch.rows) - 1)
 
     def _add(self, rows: Rows, stretch: Stretch, first: int) -> None:
@@ -45,7 +46,7 @@ class StopChecks:
 
 
 class WaitChecks:
-    """While it waits the robot stands, bit by bit, and as long as told: whole ticks, not one too many."""
+    """In waits and pauses the robot stands, bit by bit, and as long as told: whole ticks, not one more."""
 
     def __init__(self, evidence: Evidence) -> None:
         outline = evidence.outline
@@ -55,14 +56,14 @@ class WaitChecks:
         self._waits = {
             record.block.id: record.block.duration
             for record in outline.records
-            if isinstance(record.block, WaitBlock)
+            if isinstance(record.block, WaitBlock | PauseBlock)
         }
         lasts = {identity: (first, last) for identity, first, last in outline.segments()}
         for record in outline.records:
-            if isinstance(record.block, WaitBlock):
+            if isinstance(record.block, WaitBlock | PauseBlock):
                 self._add_time(record.block, record.tick, lasts)
 
-    def _add_time(self, block: WaitBlock, tick: int, lasts: dict[int, tuple[int, int]]) -> None:
+    def _add_time(self, block: WaitBlock | PauseBlock, tick: int, lasts: dict[int, tuple[int, int]]) -> None:
         first, last = lasts.get(block.id, (tick + 1, tick))
         rows, dt = last - first + 1, self._outline.header.dt
         unfinished = last == self._outline.rows - 1 and not self._outline.complete
@@ -117,6 +118,11 @@ class FrozenChecks:
     def checks(self) -> list[Check]:
         """Frozen joints."""
         return [self._tally.check()]
+
+
+def _passing(evidence: Evidence) -> frozenset[int]:
+    """Ids of the moves that pass their target without a stop."""
+    return frozenset(number for number, demand in evidence.demands.items() if demand.passes)
 
 
 def _other_bits(first: Floats, second: Floats) -> NDArray[np.bool_]:

@@ -16,16 +16,19 @@ from irlx.promises import (
     rounding_allowance,
 )
 from irlx.streams.joint_stream import Floats
-from irlx.verifier.evidence import Evidence, Pose
+from irlx.verifier.chain_legs import NoCurve, Unplaced, legs_of
+from irlx.verifier.demands import Demand
+from irlx.verifier.evidence import Evidence
 from irlx.verifier.findings.finding import Check
 from irlx.verifier.geometry.paths import LineWay
 from irlx.verifier.geometry.rotations import angle_between
+from irlx.verifier.judges.chained_moves import HANDS_OVER, ChainRows, ChainTallies
 from irlx.verifier.moves import MoveRows
 from irlx.verifier.rows import Rows, Stretch
+from irlx.verifier.tools import Pose
 from irlx.verifier.way import Course, course_of
 
 _OTHER_FRAME = "targets in other frames than R_BASE cannot be placed"
-_UNPLACED = f"the stream's {_OTHER_FRAME}"
 
 
 class ToolMoveChecks:
@@ -34,8 +37,9 @@ class ToolMoveChecks:
 
     def __init__(self, evidence: Evidence) -> None:
         self._evidence = evidence
-        self._moving = {move.block.id: move for move in evidence.moves if move.last > move.start}
-        self._resting = deque(move for move in evidence.moves if move.last == move.start)
+        alone = [move for move in evidence.moves if move.block.id not in evidence.chained]
+        self._moving = {move.block.id: move for move in alone if move.last > move.start}
+        self._resting = deque(move for move in alone if move.last == move.start)
         self._dt = evidence.outline.header.dt
         self._goal = evidence.tally("goal position", "m"), evidence.tally("goal orientation", "rad")
         self._path = evidence.tally("path position", "m"), evidence.tally("path orientation", "rad")
@@ -45,16 +49,56 @@ class ToolMoveChecks:
         self._time = evidence.tally("programmed time", "s")
         self._course: Course | None = None
         self._along, self._furthest = np.zeros(2), 0.0
-        self._skipped: set[int] = set()
+        self._skipped: dict[int, str] = {}
+        self._chains = {demand.move.block.id: chain for chain in evidence.chains for demand in chain}
+        self._chain: ChainRows | None = None
+        self._neighbours = _neighbours(list(evidence.demands.values()))
+        for chain in evidence.chains:
+            if chain[0].move.start == chain[-1].move.last:
+                self._add_resting_chain(chain)
 
     def take(self, rows: Rows) -> None:
         """Add a portion."""
         while self._resting and (place := rows.place(self._resting[0].start)) is not None:
-            self._add_resting(self._resting.popleft(), (rows.positions[place], rows.rotations[place]))
+            move = self._resting.popleft()
+            self._add_resting(move, rows.pose(place, move.block.id))
         for stretch in rows.stretches:
             move_here = self._moving.get(stretch.block)
             if move_here is not None:
                 self._add(rows, stretch, move_here)
+            elif stretch.block in self._chains:
+                self._add_chained(rows, stretch, self._chains[stretch.block])
+
+    def _add_chained(self, rows: Rows, stretch: Stretch, chain: tuple[Demand, ...]) -> None:
+        """Rows of moves that run into each other, or along a PATH."""
+        if stretch.begins and stretch.rows[0] == chain[0].move.start + 1:
+            self._chain = self._chain_of(chain)
+        if self._chain is None:
+            # Where no curve leads, nothing can be on it.
+            if chain[0].move.block.id not in self._skipped:
+                self._path[0].add(stretch.rows, np.full(len(stretch.rows), np.inf), PATH_POSITION)
+            return
+        here = stretch.after
+        final = int(stretch.rows[-1]) == chain[-1].move.last
+        self._chain.take((rows.positions[here], rows.rotations[here]), stretch.rows, stretch.block, final)
+
+    def _chain_of(self, chain: tuple[Demand, ...]) -> ChainRows | None:
+        tallies = ChainTallies(self._goal, self._path, self._progress, self._speed, self._acceleration)
+        try:
+            return ChainRows(chain, legs_of(chain), self._dt, tallies)
+        except Unplaced as error:
+            self._skipped |= {demand.move.block.id: str(error) for demand in chain}
+        except NoCurve:
+            pass
+        return None
+
+    def _add_resting_chain(self, chain: tuple[Demand, ...]) -> None:
+        """A chain without rows must have no way to go."""
+        rows = self._chain_of(chain)
+        start = chain[0].start.pose
+        if rows is not None and start is not None:
+            nothing = np.zeros((0, 3)), np.zeros((0, 3, 3))
+            rows.take(nothing, np.zeros(0, dtype=np.int64), chain[0].move.block.id, True)
 
     def _add_resting(self, move: MoveRows, pose: Pose) -> None:
         """A move without rows must have no way to go."""
@@ -67,10 +111,11 @@ class ToolMoveChecks:
     def _add(self, rows: Rows, stretch: Stretch, move: MoveRows) -> None:
         if stretch.begins or self._course is None:
             before = stretch.before.start
-            self._course = course_of(self._evidence, move, (rows.positions[before], rows.rotations[before]))
+            self._course = course_of(self._evidence, move, rows.pose(before, move.block.id))
             self._along, self._furthest = np.zeros(2), 0.0
         course = self._course
-        if stretch.ends and move.finished:
+        demand = self._evidence.demands[move.block.id]
+        if stretch.ends and move.finished and not (demand.passes or demand.follows):
             self._add_time(rows, stretch, course)
         if move.block.kind is MoveKind.PTP:
             self._add_joint_rates(rows, stretch, move)
@@ -78,7 +123,7 @@ class ToolMoveChecks:
             self._add_path(rows, stretch, course)
             self._add_tool_speed(rows, stretch, course)
         elif course.goal is None:
-            self._skipped.add(move.block.id)
+            self._skipped[move.block.id] = _OTHER_FRAME
         else:
             # Points that make no circle: nothing can be on it.
             endless = np.full(len(stretch.rows), np.inf)
@@ -89,10 +134,13 @@ class ToolMoveChecks:
 
     def _add_goal(self, course: Course, reached: Pose) -> None:
         move, goal = course.move, course.goal
-        if not move.finished:
+        demand = self._evidence.demands[move.block.id]
+        if not move.finished or demand.passes:
             return
+        if demand.follows:
+            goal = demand.end.pose
         if goal is None:
-            self._skipped.add(move.block.id)
+            self._skipped[move.block.id] = _OTHER_FRAME
             return
         row = np.array([move.last])
         self._goal[0].add(row, np.linalg.norm((reached[0] - goal[0])[None], axis=1), PATH_POSITION)
@@ -117,7 +165,7 @@ class ToolMoveChecks:
             self._progress.add(stretch.rows[-1:], missing, PATH_POSITION, rank=share, unit=unit)
         # An arc too short to be one goes by its chord, perhaps by the angle.
         short_arc = found.by_angle and not isinstance(course.way, LineWay)
-        bound = course.move.block.law.acc_ori if short_arc else course.bounds[1]
+        bound = course.move.law.acc_ori if short_arc else course.bounds[1]
         self._add_acceleration(stretch, along, bound, "rad/s2" if found.by_angle else "m/s2")
         self._along = along[-2:]
 
@@ -127,12 +175,13 @@ class ToolMoveChecks:
         self._acceleration.add(stretch.rows, rates, bound, ~(rates <= high), rates / high, unit)
 
     def _add_tool_speed(self, rows: Rows, stretch: Stretch, course: Course) -> None:
-        here, before = stretch.after, stretch.before
-        moved = np.linalg.norm(rows.positions[here] - rows.positions[before], axis=1)
-        turned = angle_between(rows.rotations[here], rows.rotations[before])
+        here = stretch.after
+        positions, rotations = rows.before(stretch)
+        moved = np.linalg.norm(rows.positions[here] - positions, axis=1)
+        turned = angle_between(rows.rotations[here], rotations)
         for way, bound, unit in (
             (moved, course.speed, "m/s"),
-            (turned, course.move.block.law.speed_ori, "rad/s"),
+            (turned, course.move.law.speed_ori, "rad/s"),
         ):
             rates = way / self._dt
             high = bound * (1.0 + PROGRAM_EXCESS) + 2.0 * PATH_STEP / self._dt
@@ -149,25 +198,53 @@ class ToolMoveChecks:
 
     def _add_joint_rates(self, rows: Rows, stretch: Stretch, move: MoveRows) -> None:
         """A PTP uses at most its share of every joint's limits, where these are finite."""
-        limits, law = self._evidence.limits, move.block.law
+        limits = self._evidence.limits
+        shares = self._shares(move, stretch)
         allowances = rounding_allowance(np.array([self._evidence.outline.largest]), self._dt)
         for kind, values, share, allowance, tally in (
-            ("speed", rows.qd, law.speed_ptp, allowances[0], self._speed),
-            ("acceleration", rows.qdd, law.acc_ptp, allowances[1], self._acceleration),
+            ("speed", rows.qd, shares[0], allowances[0], self._speed),
+            ("acceleration", rows.qdd, shares[1], allowances[1], self._acceleration),
         ):
             lower, upper = limits.bounds(kind, int(stretch.rows[0]), len(stretch.rows))
             rates = values[stretch.part]
-            bound = np.where(rates > 0.0, upper, -lower) * share
+            bound = np.where(rates > 0.0, upper, -lower) * share[:, None]
             high = bound * (1.0 + PROGRAM_EXCESS) + allowance
             finite = np.isfinite(bound)
             use = np.where(finite, np.abs(rates) / high, -np.inf)
             tally.add(stretch.rows, np.abs(rates), bound, finite & ~(np.abs(rates) <= high), use)
 
+    def _shares(self, move: MoveRows, stretch: Stretch) -> Floats:
+        """Shares (2, R) of the speed and acceleration limits; where a PTP hands over, the larger."""
+        found = np.tile(np.array([[move.law.speed_ptp], [move.law.acc_ptp]]), len(stretch.rows))
+        before, behind = self._neighbours.get(move.block.id, (None, None))
+        for other, near in (
+            (before, stretch.rows - move.start <= HANDS_OVER + 1),
+            (behind, move.last - stretch.rows < HANDS_OVER),
+        ):
+            if other is not None:
+                shares = np.array([[other.law.speed_ptp], [other.law.acc_ptp]])
+                found = np.where(near, np.maximum(found, shares), found)
+        return found
+
     def checks(self) -> list[Check]:
         """Goals, paths, programmed speed, acceleration and time."""
         tallies = (*self._goal, *self._path, self._progress, self._speed, self._acceleration)
+        reason = "; ".join(sorted(set(self._skipped.values())))
         if self._skipped:
             for tally in tallies:
-                tally.detail = f"{len(self._skipped)} moves not checked: {_OTHER_FRAME}"
-        of_tool = [tally.check(_UNPLACED if self._skipped else "") for tally in tallies]
+                tally.detail = f"{len(self._skipped)} moves not checked: {reason}"
+        of_tool = [tally.check(f"the stream's {reason}" if self._skipped else "") for tally in tallies]
         return [*of_tool, self._time.check()]
+
+
+def _neighbours(demands: list[Demand]) -> dict[int, tuple[MoveRows | None, MoveRows | None]]:
+    """For moves that run into each other, the one before and the one behind, None where it stands."""
+    moves = [None, *(demand.move for demand in demands), None]
+    return {
+        demand.move.block.id: (
+            moves[number] if demand.follows else None,
+            moves[number + 2] if demand.passes else None,
+        )
+        for number, demand in enumerate(demands)
+        if demand.follows or demand.passes
+    }

@@ -1,0 +1,193 @@
+"""What a run needs, loaded and checked against each other: a program, its cell, and what the caller gives."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from math import inf
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+
+from irlx._version import __version__
+from irlx.cell.cell import Cell
+from irlx.cell.errors import CellError
+from irlx.cell.find import is_file
+from irlx.cell.input_file import read_input_file
+from irlx.cell.load import load_cell
+from irlx.diagnostics import IrlxError, report
+from irlx.diagnostics.diagnostic import near_matches
+from irlx.interpreter.channels.pieces import InputGiven
+from irlx.interpreter.channels.setup import ChannelSetup
+from irlx.interpreter.interpret import MAX_STEPS
+from irlx.pacing.inputs import InputFunction, Inputs
+from irlx.pacing.pauses import PauseFunction, Pauses, is_time
+from irlx.program import Program, ProgramError, cell_path, load
+from irlx.promises import CONDITION, LONGEST_TICK, SHORTEST_TICK
+from irlx.robot.equality import Constraint, LinearConstraint
+from irlx.robot.kinematics import Kinematics
+from irlx.robot.registered_constraints import registered_constraints
+from irlx.streams.joint_stream import FORMAT_VERSION, StreamHeader
+
+PathLike = str | os.PathLike[str]
+InputsGiven = InputFunction | Mapping[str, Sequence[tuple[float, float]]] | PathLike | None
+"""A function of name and time (s), traces by name (times in s with the value from each on), or a CSV file."""
+
+LEAST_TICK_MS = SHORTEST_TICK * 1e3
+LONGEST_TICK_MS = LONGEST_TICK * 1e3
+
+
+@dataclass(frozen=True)
+class Job:
+    """A program and the cell it runs in, checked against each other; tick in ns.
+
+    A move may take `max_slow` times as long as programmed, the program may execute `max_steps` statements;
+    `inputs` are the cell's with those of the caller; `channels` what the program may read and write; `pauses`
+    say how long each PAUSE lasts.
+    """
+
+    program: Program
+    cell: Cell
+    tick_ns: int
+    max_slow: float = inf
+    max_steps: int = MAX_STEPS
+    inputs: Inputs = field(default_factory=Inputs)
+    channels: ChannelSetup = field(default_factory=ChannelSetup)
+    pauses: Pauses = field(default_factory=Pauses)
+
+
+def prepare(
+    program: Program | PathLike,
+    cell: PathLike | None = None,
+    tick_ms: float | None = None,
+    max_slow: float | None = None,
+    max_steps: int | None = None,
+    inputs: InputsGiven = None,
+    files: PathLike | None = None,
+    input: InputGiven = None,
+    output: IO[str] | None = None,
+    pause_s: float = 0.0,
+    on_pause: PauseFunction | None = None,
+) -> Job:
+    """Load what a run needs; `files`, `input` and `output` as in `run`.
+
+    `cell` None: the file that SYSTEM SPECIFICATION names, else the program's own name with .toml.
+    Raises ProgramError, CellError, or IrlxError with IRL006 for a number out of range.
+    """
+    if not isinstance(program, Program):
+        program = _loaded(program, cell)
+    loaded = load_cell(cell_path(program, cell))
+    if max_slow is not None and not max_slow >= 1.0:
+        cause = "a move cannot be faster than programmed: at least 1"
+        raise IrlxError(report("IRL006", option="--max-slow", value=f"{max_slow:g}", cause=cause))
+    slowest = inf if max_slow is None else max_slow
+    said = inputs_of(loaded, inputs)
+    steps = MAX_STEPS if max_steps is None else max_steps
+    if steps < 1:
+        raise IrlxError(report("IRL006", option="--max-steps", value=f"{steps}", cause="at least 1"))
+    if not is_time(pause_s):
+        cause = "a pause lasts a number of seconds, 0 or more"
+        raise IrlxError(report("IRL006", option="--pause", value=f"{pause_s:g}", cause=cause))
+    more = _channels(program, loaded, files, input, output), Pauses(pause_s, on_pause)
+    if tick_ms is None:
+        return Job(program, loaded, loaded.tick_ns, slowest, steps, said, *more)
+    if not LEAST_TICK_MS <= tick_ms <= LONGEST_TICK_MS:
+        cause = f"a tick lasts {LEAST_TICK_MS:g} to {LONGEST_TICK_MS:g} ms"
+        raise IrlxError(report("IRL006", option="--tick", value=f"{tick_ms:g}", cause=cause))
+    return Job(program, loaded, round(tick_ms * 1e6), slowest, steps, said, *more)
+
+
+def _channels(
+    program: Program, cell: Cell, files: PathLike | None, input: InputGiven, output: IO[str] | None
+) -> ChannelSetup:
+    """What a program may read and write. Raises IrlxError, IRL006, for what is no folder or input."""
+    folder = program.path.parent if files is None else Path(files)
+    if files is not None and not folder.is_dir():
+        raise IrlxError(report("IRL006", option="--files", value=str(files), cause="there is no such folder"))
+    if not (input is None or isinstance(input, str) or hasattr(input, "readline")):
+        cause = "a text, or a file that is open to be read"
+        raise IrlxError(report("IRL006", option="input=", value=repr(input), cause=cause))
+    own = {found.path: "a data list of the program" for found in program.all_lists}
+    own |= {module.path: "a module of the program" for module in program.modules}
+    own |= {program.path: "the program itself", Path(cell.file): "the cell of the program"}
+    return ChannelSetup(folder, own, input, output.write if output is not None else None)
+
+
+def inputs_of(cell: Cell, given: InputsGiven) -> Inputs:
+    """What inputs say: first `given`, a function, traces by name or the path of a CSV; else the cell.
+
+    Raises CellError for a file that is no such CSV.
+    """
+    if callable(given):
+        return Inputs(cell.inputs, given)
+    if isinstance(given, str | os.PathLike):
+        return Inputs({**cell.inputs, **read_input_file(Path(given))})
+    own = {
+        name.casefold(): tuple((float(at), float(value)) for at, value in trace)
+        for name, trace in (given or {}).items()
+    }
+    return Inputs({**cell.inputs, **own})
+
+
+def _loaded(path: PathLike, cell: PathLike | None) -> Program:
+    """The program; where names are unknown and its cell is at fault, the cell's faults come first."""
+    try:
+        return load(path, cell)
+    except ProgramError as error:
+        likely = Path(cell) if cell is not None else Path(path).with_suffix(".toml")
+        if any(found.code == "IRL201" for found in error.diagnostics) and is_file(likely):
+            load_cell(likely)
+        raise
+
+
+def kinematics_of(cell: Cell) -> Kinematics:
+    """Kinematics of a cell's robot with its constraints.
+
+    Raises CellError: IRL617 for a constraint that nobody registered, IRL616 for one that the start breaks.
+    """
+    plain = Kinematics(cell.robot)
+    if not (cell.relations or cell.registered):
+        return plain
+    names = cell.robot.joint_names
+    found: list[Constraint] = [LinearConstraint(relation, names) for relation in cell.relations]
+    makers = registered_constraints()
+    for asked in cell.registered:
+        maker = makers.get(asked.use)
+        if maker is None:
+            known = ", ".join(sorted(makers)) or "none"
+            data: dict[str, Any] = {
+                "use": asked.use,
+                "near": near_matches(asked.use, sorted(makers)),
+                "known": known,
+            }
+            raise CellError(report("IRL617", asked.place, **data))
+        constraint = maker(plain)
+        broken = float(np.max(np.abs(constraint.residual(cell.start)), initial=0.0))
+        if not broken <= CONDITION:
+            told: dict[str, Any] = {"name": asked.name, "found": f"{broken:.6g}", "due": "0"}
+            raise CellError(report("IRL616", asked.place, **told))
+        found.append(constraint)
+    return plain.constrained(found)
+
+
+def header_of(job: Job) -> StreamHeader:
+    """Provenance of the stream of a job; names of files without their folders."""
+    program, cell = job.program, job.cell
+    return StreamHeader(
+        format_version=FORMAT_VERSION,
+        irlx_version=__version__,
+        program_name=program.path.name,
+        program_sha256=program.sha256,
+        cell_name=Path(cell.file).name,
+        robot_name=cell.robot.name,
+        robot_model=cell.model,
+        robot_fingerprint=cell.robot.fingerprint,
+        tip=cell.robot.tip,
+        joint_names=cell.robot.joint_names,
+        joint_units=tuple("m" if axis.is_prismatic else "rad" for axis in cell.robot.axes),
+        tick_ns=job.tick_ns,
+        limits=cell.limits,
+        weights=tuple(float(weight) for weight in cell.weights),
+    )

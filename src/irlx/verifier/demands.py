@@ -1,0 +1,182 @@
+"""What moves ask for, one after another: where each starts, where its targets lie, and which pass theirs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from irlx.blocks import (
+    InputBlock,
+    JointIncrement,
+    JointTarget,
+    MoveBlock,
+    MoveKind,
+    PoseIncrement,
+    PoseTarget,
+    SignalBlock,
+    Target,
+)
+from irlx.promises import JOINT_LINE, PATH_ORIENTATION, PATH_POSITION
+from irlx.robot.description import RobotDescription
+from irlx.streams.joint_stream import Floats
+from irlx.verifier.geometry.arcs import arc_shape
+from irlx.verifier.geometry.forward import forward
+from irlx.verifier.geometry.rotations import angle_between, from_quaternion
+from irlx.verifier.moves import MoveRows
+from irlx.verifier.outline import Outline
+from irlx.verifier.tools import Pose, ToolsInForce
+
+BASE_FRAME, TOOL_FRAME = "R_BASE", "R_TOOL"
+"""The frames of targets that the verifier can place: the root of the robot, and for shifts the tool."""
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """Where something is or is to be: pose of the tool and posture (n,), None where not known."""
+
+    pose: Pose | None
+    posture: Floats | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Demand:
+    """One move: where it starts, its targets (via point, points of a PATH, the last one), where it ends,
+    and whether it passes that on its way to the next move, or comes from one that did."""
+
+    move: MoveRows
+    start: Place
+    targets: tuple[Place, ...]
+    end: Place
+    passes: bool
+    follows: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Placer:
+    """Finds the places of targets of a robot, with the tools in force; without a robot only postures."""
+
+    robot: RobotDescription | None
+    tools: ToolsInForce
+
+    def of_posture(self, q: Floats, block: int) -> Pose | None:
+        """Pose of the tool of a block in posture q (n,)."""
+        if self.robot is None:
+            return None
+        position, rotation = self.tools.placed(
+            forward(self.robot, q[None]), np.array([self.tools.number(block)], dtype=np.int64)
+        )
+        return position[0], rotation[0]
+
+    def all_of(self, move: MoveRows, start: Place) -> tuple[Place, ...]:
+        """Places of all targets of a move, counted from the one before, or of a CIRCLE from its start."""
+        found: list[Place] = []
+        for target in move.block.targets:
+            counted = start if move.block.arc is not None or not found else found[-1]
+            found.append(self.place(target, counted, move.block.id))
+        return tuple(found)
+
+    def end(self, move: MoveRows, start: Place, targets: tuple[Place, ...]) -> Place:
+        """Place where a move ends: its last target, or of a CIRCLE by an angle the end of that way."""
+        last, arc = targets[-1], move.block.arc
+        via = targets[0].pose
+        if arc is None or arc.angle is None or start.pose is None or via is None or last.pose is None:
+            return last
+        shape = arc_shape(start.pose[0], via[0], last.pose[0], arc.angle)
+        return last if shape is None else Place((shape.end, last.pose[1]))
+
+    def place(self, target: Target, start: Place, block: int) -> Place:
+        """Place of a target of a block, counted from `start` where it is an increment or keeps something."""
+        if isinstance(target, JointTarget):
+            posture = np.array(target.values, dtype=np.float64)
+            return Place(self.of_posture(posture, block), posture)
+        if isinstance(target, JointIncrement):
+            if start.posture is None:
+                return Place(None)
+            posture = start.posture + np.array(target.values)
+            return Place(self.of_posture(posture, block), posture)
+        return Place(_pose(target, start.pose))
+
+
+def _pose(target: PoseTarget | PoseIncrement, start: Pose | None) -> Pose | None:
+    position = np.array(target.position, dtype=np.float64)
+    rotation = None
+    if target.orientation is not None:
+        quaternion = np.array(target.orientation)
+        rotation = from_quaternion(quaternion / np.linalg.norm(quaternion))
+    if isinstance(target, PoseTarget):
+        kept = None if start is None else start[1]
+        rotation = kept if rotation is None else rotation
+        return None if target.frame != BASE_FRAME or rotation is None else (position, rotation)
+    if start is None:
+        return None
+    if rotation is not None:
+        return start[0] + start[1] @ position, start[1] @ rotation
+    if target.frame == TOOL_FRAME:
+        return start[0] + start[1] @ position, start[1]
+    return (start[0] + position, start[1]) if target.frame == BASE_FRAME else None
+
+
+def demands_of(outline: Outline, moves: list[MoveRows], placer: Placer) -> list[Demand]:
+    """What every move asks for, in order.
+
+    A move passes its target where it may - it has a blend, and what follows it, signals aside, is a move that
+    can join it - and where the rows do: they do not stand at the target.
+    """
+    joinable, ends = _joinable(outline), _Ends(outline, placer)
+    found: list[Demand] = []
+    for move in moves:
+        follows = bool(found) and found[-1].passes
+        start = found[-1].end if follows else ends.place(move.start, move.block.id)
+        targets = placer.all_of(move, start)
+        end = placer.end(move, start, targets)
+        passes = move.block.id in joinable and not _stands(outline, move, end, ends)
+        found.append(Demand(move, start, targets, end, passes, follows))
+    return found
+
+
+class _Ends:
+    """Places where blocks end, their poses computed all at once."""
+
+    def __init__(self, outline: Outline, placer: Placer) -> None:
+        self._outline, self._tools = outline, placer.tools
+        self._tips = None if placer.robot is None else forward(placer.robot, outline.ends)
+
+    def place(self, row: int, block: int) -> Place:
+        """Place in a row in which a block ends, with the tool of another one."""
+        stretch = int(np.searchsorted(self._outline.lasts, row))
+        posture = self._outline.ends[stretch]
+        if self._tips is None:
+            return Place(None, posture)
+        tip = self._tips[0][stretch : stretch + 1], self._tips[1][stretch : stretch + 1]
+        position, rotation = self._tools.placed(tip, np.array([self._tools.number(block)], dtype=np.int64))
+        return Place((position[0], rotation[0]), posture)
+
+
+def _stands(outline: Outline, move: MoveRows, target: Place, ends: _Ends) -> bool:
+    """Whether a move ends at rest at its target; where that is not known, whether it ends at rest."""
+    if not outline.stands(move.last):
+        return False
+    reached = ends.place(move.last, move.block.id)
+    if target.posture is not None and reached.posture is not None and move.block.kind is MoveKind.PTP:
+        return bool((np.abs(reached.posture - target.posture) <= JOINT_LINE).all())
+    pose = reached.pose
+    if pose is None or target.pose is None:
+        return True
+    near = float(np.linalg.norm(pose[0] - target.pose[0])) <= PATH_POSITION
+    return near and float(angle_between(pose[1], target.pose[1])) <= PATH_ORIENTATION
+
+
+def _joinable(outline: Outline) -> frozenset[int]:
+    """Ids of moves that may pass their target: PTP to PTP, and others to others."""
+    moves = [
+        record.block for record in outline.records if not isinstance(record.block, SignalBlock | InputBlock)
+    ]
+    found = set()
+    for block, following in pairwise(moves):
+        if not isinstance(block, MoveBlock) or not isinstance(following, MoveBlock) or block.blend is None:
+            continue
+        if (block.kind is MoveKind.PTP) is (following.kind is MoveKind.PTP):
+            found.add(block.id)
+    return frozenset(found)

@@ -1,0 +1,336 @@
+"""Curves run through one after another, their corners rounded or sharp: which of its parts a row lies on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irlx.promises import PATH_POSITION, PATH_STEP
+from irlx.streams.joint_stream import Floats, Integers
+from irlx.verifier.geometry.blends import Blend
+from irlx.verifier.geometry.corners import Corner, distance_taken
+from irlx.verifier.geometry.curves import Curve, Pose
+from irlx.verifier.geometry.rotations import angle_between
+
+FIRST_LOOK = 64
+"""Rows looked at together on a part at first, then twice as many, and so on."""
+
+
+@dataclass(frozen=True)
+class Leg:
+    """One curve of a chain, and how its end is passed; the last leg's corner counts for nothing."""
+
+    curve: Curve
+    corner: Corner
+
+
+@dataclass(frozen=True, eq=False)
+class Placed:
+    """Where rows (R,) lie on a chain.
+
+    `position` m and `orientation` rad off it; `along` the way from its start, m; `leg` the number of the leg,
+    whose end is the point of a blend nearest to the corner; `straight`: on a leg itself, not on a blend;
+    `bend`: least curvature on the way from the row before, 1/m; `sharp`: a corner without a blend was passed
+    on the way from the row before.
+    """
+
+    position: Floats
+    orientation: Floats
+    along: Floats
+    leg: Integers
+    straight: NDArray[np.bool_]
+    bend: Floats
+    sharp: NDArray[np.bool_]
+
+    @classmethod
+    def empty(cls, rows: int) -> Placed:
+        """Room for R rows."""
+        position, orientation, along, bend = np.zeros((4, rows))
+        yes, no = np.ones(rows, dtype=np.bool_), np.zeros(rows, dtype=np.bool_)
+        return cls(position, orientation, along, np.zeros(rows, dtype=np.int64), yes, bend, no)
+
+    def first(self, rows: int) -> Placed:
+        """The first of the rows."""
+        return Placed(
+            self.position[:rows],
+            self.orientation[:rows],
+            self.along[:rows],
+            self.leg[:rows],
+            self.straight[:rows],
+            self.bend[:rows],
+            self.sharp[:rows],
+        )
+
+
+@dataclass(frozen=True)
+class _Part:
+    """A leg without its blends, or the blend at its end."""
+
+    leg: int
+    blend: bool
+
+
+class ChainWay:
+    """The way along the legs of a chain; rows are given to it in order.
+
+    `reach` is the longest way in a tick, m.
+    """
+
+    def __init__(self, legs: list[Leg], reach: float) -> None:
+        self._legs = legs
+        self._reach = reach
+        self._bases = [0.0]
+        self._blends: list[Blend | None] = []
+        self._ends: list[float] = []
+        self._part = _Part(0, False)
+        self._along = 0.0
+        self._near: tuple[_Part, float] = self._part, 0.0
+
+    @property
+    def ends(self) -> Floats:
+        """Way (K,) to the ends of the first K legs, as far as their corners are known."""
+        return np.array(self._ends)
+
+    @property
+    def length(self) -> float:
+        """Way to the end of the leg that the rows have come to, m."""
+        leg = self._part.leg
+        return self._bases[leg] + self._legs[leg].curve.length
+
+    @property
+    def left(self) -> float:
+        """Way to the end of the last leg, blends not reached yet being counted as corners, m."""
+        behind = self._legs[self._part.leg + 1 :]
+        return self.length + sum(leg.curve.length for leg in behind)
+
+    def take(self, positions: Floats, rotations: Floats, final: bool) -> Placed:
+        """Place the next rows (positions (R, 3), rotations (R, 3, 3)), or the first of them.
+
+        Where a blend's distance has to be found out, rows wait until the next leg is reached: they have to be
+        given again, with more behind them. With `final` there are no more.
+        """
+        placed = Placed.empty(len(positions))
+        done, look = 0, FIRST_LOOK
+        while done < len(positions):
+            part = self._part
+            stop = min(done + look, len(positions))
+            rest = positions[done:], rotations[done:]
+            if not part.blend and not self._settle(part.leg, rest, final):
+                stop = min(stop, done + self._surely_before(part.leg, positions[done:stop]))
+                if stop == done:
+                    break
+            found = self._run(placed, done, positions[:stop], rotations)
+            look = 2 * look if found == stop else FIRST_LOOK
+            done = found
+        return placed.first(done)
+
+    # ---- Corners
+
+    def _is_open(self, leg: int) -> bool:
+        """Whether the distance of the blend at the end of a leg is still to be found out."""
+        return len(self._blends) <= leg < len(self._legs) - 1 and self._legs[leg].corner.is_open
+
+    def _settle(self, leg: int, rows: Pose, final: bool) -> bool:
+        """Make the blend at the end of a leg, once its distance is known; whether it is."""
+        if leg < len(self._blends) or leg == len(self._legs) - 1:
+            return True
+        first, second, corner = self._legs[leg].curve, self._legs[leg + 1].curve, self._legs[leg].corner
+        distance = corner.distance
+        if corner.is_open:
+            if not final and self._surely_before(leg, rows[0]) == len(rows[0]):
+                return False
+            found = distance_taken((first, second), corner, rows, self._hint(_Part(leg, False)), final)
+            if found is None:
+                return False
+            distance = found
+        blend = Blend(first, second, distance) if distance > PATH_STEP else None
+        self._blends.append(blend)
+        end, cut = self._bases[leg] + first.length, 0.0
+        if blend is not None:
+            cut = blend.length - 2.0 * blend.distance
+            self._ends.append(end - blend.distance + float(blend.way(np.array([blend.corner]))[0]))
+        else:
+            self._ends.append(end)
+        self._bases.append(end + cut)
+        return True
+
+    def _surely_before(self, leg: int, positions: Floats) -> int:
+        """How many of the next rows lie before any blend at the end of a leg."""
+        curve, most = self._legs[leg].curve, self._legs[leg].corner.distance
+        way = curve.nearest(positions, self._hint(_Part(leg, False)))
+        off = np.linalg.norm(positions - curve.points(way), axis=1)
+        inside = (way <= curve.length - most) & (off <= PATH_POSITION)
+        return len(positions) if inside.all() else int(np.argmin(inside))
+
+    # ---- Parts
+
+    def _run(self, placed: Placed, done: int, positions: Floats, rotations: Floats) -> int:
+        """Place rows from `done` on that lie on the part reached, and go on to the next one behind them."""
+        part = self._part
+        at, off, past = self._on(part, positions[done:])
+        bad = past | ~(off <= PATH_POSITION)
+        count = len(bad) if not bad.any() else int(np.argmax(bad))
+        self._place(placed, done, part, at[:count], off[:count], rotations)
+        done += count
+        if count == len(bad):
+            return done
+        row = positions[done : done + 1]
+        other = self._fitting(row)
+        if other is not None and self._order(other) > self._order(part):
+            self._part = other
+        elif other is not None:
+            at, off, _ = self._on(other, row)
+            self._place(placed, done, other, at, off, rotations)
+            done += 1
+        elif past[count]:
+            self._part = self._next(part) or part
+        else:
+            # On no part at all: as far off this one as it says, with all rows that do not leave its stretch.
+            left = np.flatnonzero(past[count:])
+            lost = int(left[0]) if left.size else len(bad) - count
+            self._place(placed, done, part, at[count : count + lost], off[count : count + lost], rotations)
+            done += lost
+        return done
+
+    def _on(self, part: _Part, positions: Floats) -> tuple[Floats, Floats, NDArray[np.bool_]]:
+        """Places (R,) on a part nearest to positions, distances from it, and which rows lie behind it."""
+        if part.blend:
+            blend = self._blends[part.leg]
+            assert blend is not None
+            u = blend.nearest(positions)
+            return (
+                u,
+                np.linalg.norm(positions - blend.points(u), axis=1),
+                (u >= 1.0) & (blend.behind(positions) > 0.0),
+            )
+        curve = self._legs[part.leg].curve
+        low, high = self._bounds(part.leg)
+        hint = self._hint(part)
+        way = curve.nearest(positions, hint)
+        inside = np.clip(way, low, high)
+        off = np.linalg.norm(positions - curve.points(inside), axis=1)
+        if part.leg == len(self._legs) - 1:
+            return inside, off, np.zeros(len(way), dtype=np.bool_)
+        if part.leg >= len(self._blends) or self._blends[part.leg] is not None:
+            return inside, off, way > high
+        return inside, off, self._past_sharp(part.leg, positions, way, off, hint)
+
+    def _past_sharp(
+        self, leg: int, positions: Floats, way: Floats, off: Floats, hint: float
+    ) -> NDArray[np.bool_]:
+        """Which rows lie behind a sharp corner: nearer to the next leg, or going back on both."""
+        following = self._legs[leg + 1].curve
+        there = np.clip(following.nearest_at_start(positions), 0.0, following.length)
+        apart = np.linalg.norm(positions - following.points(there), axis=1)
+        furthest = np.maximum.accumulate(np.concatenate([[hint], way]))[1:]
+        back = (furthest - way > PATH_STEP) & (apart <= off + PATH_STEP)
+        return np.asarray((apart < off) | back)
+
+    def _place(
+        self, placed: Placed, start: int, part: _Part, at: Floats, off: Floats, rotations: Floats
+    ) -> None:
+        """Enter rows that lie at places `at` (R,) of a part."""
+        if not len(at):
+            return
+        here = slice(start, start + len(at))
+        leg, base = part.leg, self._bases[part.leg]
+        curve = self._legs[leg].curve
+        if part.blend:
+            blend = self._blends[leg]
+            assert blend is not None
+            due, along = blend.rotations(at), base + curve.length - blend.distance + blend.way(at)
+            placed.leg[here] = leg + (at > blend.corner)
+        else:
+            due, along = curve.rotations(at), base + at
+            placed.leg[here] = leg
+        placed.position[here], placed.along[here] = off, along
+        placed.orientation[here] = angle_between(rotations[here], due)
+        placed.straight[here] = not part.blend
+        placed.bend[here] = self._bends(part, at)
+        placed.sharp[start] = self._is_sharp_between(self._near[0], part)
+        self._near, self._along = (part, float(at[-1])), float(along[-1])
+
+    def _bends(self, part: _Part, at: Floats) -> Floats:
+        """Least curvature (R,) from the place before, on the same part, to each place; otherwise 0."""
+        curve = self._legs[part.leg].curve
+        if not part.blend and curve.is_straight:
+            return np.zeros(len(at))
+        known = self._near[0] == part
+        before = np.concatenate([[self._near[1] if known else at[0]], at[:-1]])
+        shares = np.linspace(0.0, 1.0, 5)
+        places = (before[:, None] + (at - before)[:, None] * shares).ravel()
+        if part.blend:
+            blend = self._blends[part.leg]
+            assert blend is not None
+            found = blend.curvature(places)
+        else:
+            found = np.linalg.norm(curve.bends(places), axis=1)
+        found = found.reshape(-1, len(shares))
+        # Between samples a curve may dip by an eighth of their second difference.
+        dip = np.max(np.abs(np.diff(found, 2, axis=1)), axis=1) / 8.0
+        least = np.maximum(np.min(found, axis=1) - dip, 0.0)
+        if not known:
+            least[0] = 0.0
+        return np.asarray(least)
+
+    # ---- Order of the parts
+
+    def _bounds(self, leg: int) -> tuple[float, float]:
+        """First and last place on a leg that no blend takes."""
+        before = self._blends[leg - 1] if leg else None
+        behind = self._blends[leg] if leg < len(self._blends) else None
+        low = 0.0 if before is None else before.distance
+        length = self._legs[leg].curve.length
+        return low, max(low, length if behind is None else length - behind.distance)
+
+    def _hint(self, part: _Part) -> float:
+        """Place on a part from which the next rows go on."""
+        if self._near[0] == part:
+            return self._near[1]
+        return self._bounds(part.leg)[0] if part.leg <= len(self._blends) else 0.0
+
+    def _order(self, part: _Part) -> int:
+        return 2 * part.leg + part.blend
+
+    def _next(self, part: _Part) -> _Part | None:
+        if part.leg >= len(self._blends):
+            return None
+        if not part.blend and self._blends[part.leg] is not None:
+            return _Part(part.leg, True)
+        return _Part(part.leg + 1, False) if part.leg + 1 < len(self._legs) else None
+
+    def _fitting(self, row: Floats) -> _Part | None:
+        """The first part on which a row (1, 3) lies that a tick can reach from here, or the one before."""
+        part = self._next(self._part)
+        while part is not None and self._start(part) <= self._along + self._reach + PATH_POSITION:
+            if not part.blend and self._is_open(part.leg):
+                # Its blend is found out when it is reached.
+                return part if self._surely_before(part.leg, row) else None
+            if not part.blend:
+                self._settle(part.leg, (row, row), False)
+            _, off, past = self._on(part, row)
+            if off[0] <= PATH_POSITION and not past[0]:
+                return part
+            part = self._next(part)
+        before = self._before(self._part)
+        if before is not None and self._on(before, row)[1][0] <= PATH_POSITION:
+            return before
+        return None
+
+    def _before(self, part: _Part) -> _Part | None:
+        if part.blend:
+            return _Part(part.leg, False)
+        if part.leg == 0:
+            return None
+        return _Part(part.leg - 1, self._blends[part.leg - 1] is not None)
+
+    def _start(self, part: _Part) -> float:
+        """Way to the start of a part."""
+        low, high = self._bounds(part.leg)
+        return self._bases[part.leg] + (high if part.blend else low)
+
+    def _is_sharp_between(self, one: _Part, other: _Part) -> bool:
+        low, high = sorted((one.leg, other.leg))
+        return any(self._blends[leg] is None for leg in range(low, high))

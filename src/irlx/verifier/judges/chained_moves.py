@@ -1,0 +1,208 @@
+"""Moves of the tool that run into each other, and those along a PATH, against the one way that they make."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irlx.promises import PATH_ORIENTATION, PATH_POSITION, PATH_STEP, PROGRAM_EXCESS
+from irlx.streams.joint_stream import Floats, Integers
+from irlx.verifier.chain_legs import ChainLegs
+from irlx.verifier.demands import Demand
+from irlx.verifier.findings.tally import Tally
+from irlx.verifier.geometry.chains import ChainWay, Placed
+from irlx.verifier.geometry.rotations import angle_between
+from irlx.verifier.tools import Pose
+
+HANDS_OVER = 2
+"""Rows at either end of a block's own that may lie on its neighbour: the nearest tick, and one beside it."""
+
+REACH = 2.0
+"""How much further than its speed allows a row may lie from the one before and still be looked for."""
+
+
+@dataclass(frozen=True)
+class ChainTallies:
+    """The checks that rows of chains count for."""
+
+    goal: tuple[Tally, Tally]
+    path: tuple[Tally, Tally]
+    progress: Tally
+    speed: Tally
+    acceleration: Tally
+
+
+class _Waiting:
+    """Rows of a chain not judged yet: poses (R + 1, ..) from the row before them on, indices, blocks."""
+
+    def __init__(self, start: Pose) -> None:
+        self.positions, self.rotations = start[0][None], start[1][None]
+        self.rows = self.blocks = np.zeros(0, dtype=np.int64)
+
+    def add(self, poses: Pose, rows: Integers, block: int) -> None:
+        """Rows of one block that come next."""
+        self.positions = np.concatenate([self.positions, poses[0]])
+        self.rotations = np.concatenate([self.rotations, poses[1]])
+        self.rows = np.concatenate([self.rows, rows])
+        self.blocks = np.concatenate([self.blocks, np.full(len(rows), block, dtype=np.int64)])
+
+    def without(self, count: int) -> _Waiting:
+        """What is left behind the first rows."""
+        left = _Waiting((self.positions[count], self.rotations[count]))
+        left.positions, left.rotations = self.positions[count:], self.rotations[count:]
+        left.rows, left.blocks = self.rows[count:], self.blocks[count:]
+        return left
+
+
+class ChainRows:
+    """The rows of one chain, given to it in order; `legs` is its geometry."""
+
+    def __init__(self, chain: tuple[Demand, ...], legs: ChainLegs, dt: float, tallies: ChainTallies) -> None:
+        self._chain, self._legs, self._tallies, self._dt = chain, legs, tallies, dt
+        self._way = ChainWay(list(legs.legs), REACH * float(np.max(legs.speed)) * dt)
+        start = chain[0].start.pose
+        assert start is not None
+        self._waiting = _Waiting(start)
+        self._firsts = np.array([demand.move.start + 1 for demand in chain])
+        self._lasts = np.array([demand.move.last for demand in chain])
+        self._ids = np.array([demand.move.block.id for demand in chain])
+        # Of the last two rows judged: way, position, bounds. Before the chain the tool stood.
+        self._alongs, self._points = np.zeros(2), np.array([start[0], start[0]])
+        self._accelerations = np.zeros(2)
+        self._speeds, self._sharp = np.zeros((3, 1)), np.zeros(1, dtype=np.bool_)
+        self._furthest, self._unknown = 0.0, False
+
+    def take(self, poses: Pose, rows: Integers, block: int, final: bool) -> None:
+        """Look at the next rows, those of one block; `final` are the last ones of the chain."""
+        waiting = self._waiting
+        waiting.add(poses, rows, block)
+        placed = self._way.take(waiting.positions[1:], waiting.rotations[1:], final)
+        count = len(placed.along)
+        judged = self._known(placed)
+        if judged and not self._unknown:
+            self._judge(placed.first(judged))
+        self._unknown = self._unknown or judged < count
+        if final and self._chain[-1].move.finished:
+            self._add_end(waiting)
+        self._waiting = waiting.without(count)
+
+    def _known(self, placed: Placed) -> int:
+        """How many rows lie before the corner of a move in which the stream breaks off: whither it goes from
+        there, and how, nobody knows."""
+        free = self._legs.free_end
+        if free is None:
+            return len(placed.along)
+        last = self._legs.legs[-1].curve.length
+        beyond = (placed.leg == len(self._legs.legs) - 1) & (placed.along > self._way.length - last + free)
+        return int(np.argmax(beyond)) if beyond.any() else len(beyond)
+
+    def _judge(self, placed: Placed) -> None:
+        count = len(placed.along)
+        rows = self._waiting.rows[:count]
+        self._tallies.path[0].add(rows, placed.position, PATH_POSITION)
+        self._tallies.path[1].add(rows, placed.orientation, PATH_ORIENTATION)
+        self._add_progress(rows, placed)
+        self._add_labels(rows, placed)
+        alongs = np.concatenate([self._alongs, placed.along])
+        near = self._near(placed, np.abs(np.diff(alongs[1:])))
+        self._add_speed(rows, placed, alongs, near)
+        self._add_acceleration(rows, placed, alongs, near)
+        self._alongs = alongs[-2:]
+
+    def _add_progress(self, rows: Integers, placed: Placed) -> None:
+        furthest = np.maximum.accumulate(np.concatenate([[self._furthest], placed.along]))
+        back = furthest[:-1] - placed.along
+        self._furthest = float(furthest[-1])
+        self._tallies.progress.add(rows, back, PATH_STEP, rank=back / PATH_STEP, unit="m")
+
+    def _add_labels(self, rows: Integers, placed: Placed) -> None:
+        """Rows belong to a block up to the point of the way nearest to its corner, then to the next one."""
+        if len(self._chain) == 1:
+            return
+        block = np.searchsorted(self._ids, self._waiting.blocks[: len(rows)])
+        ends = np.full(len(self._legs.legs) + 1, np.inf)
+        ends[: len(self._way.ends)] = self._way.ends
+        # Behind the last corner that is known nothing lies yet; before the first block there is no corner.
+        starts = np.concatenate([[-np.inf], np.minimum(ends[self._legs.last_of], self._way.length)])
+        late = placed.along - ends[self._legs.last_of[block]]
+        early = starts[block] - placed.along
+        late[(block == len(self._chain) - 1) | (self._lasts[block] - rows < HANDS_OVER)] = 0.0
+        early[rows - self._firsts[block] < HANDS_OVER] = 0.0
+        off = np.maximum(np.maximum(late, early), 0.0)
+        self._tallies.progress.add(rows, off, PATH_POSITION, rank=off / PATH_POSITION, unit="m")
+
+    def _near(self, placed: Placed, steps: Floats) -> tuple[Integers, Integers, Integers]:
+        """Leg of each row, and those of its neighbours that are no further than its step: where one leg hands
+        over to the next, what is allowed on either of them is."""
+        ends = np.full(len(self._legs.legs) + 1, np.inf)
+        ends[: len(self._way.ends)] = self._way.ends
+        leg = placed.leg
+        starts = np.where(leg > 0, ends[leg - 1], -np.inf)
+        before = np.where(placed.along - steps <= starts, leg - 1, leg)
+        behind = np.where(placed.along + steps >= ends[leg], leg + 1, leg)
+        return np.maximum(before, 0), leg, np.minimum(behind, len(self._legs.legs) - 1)
+
+    def _add_speed(
+        self, rows: Integers, placed: Placed, alongs: Floats, near: tuple[Integers, Integers, Integers]
+    ) -> None:
+        legs, count, dt = self._legs, len(rows), self._dt
+        allowed = np.array(
+            [np.max([values[leg] for leg in near], axis=0) for values in (legs.speed, legs.turn, legs.acc)]
+        )
+        # From one row to the next, the larger of what is allowed at both.
+        both = np.concatenate([self._speeds, allowed], axis=1)
+        self._speeds = both[:, -1:]
+        speed, turn, acc = np.maximum(both[:, 1:], both[:, :-1])
+        with np.errstate(divide="ignore"):
+            speed = np.minimum(speed, np.sqrt(acc / placed.bend))
+        moved = np.linalg.norm(np.diff(self._waiting.positions[: count + 1], axis=0), axis=1)
+        turned = angle_between(self._waiting.rotations[1 : count + 1], self._waiting.rotations[:count])
+        for way, bound, unit in (
+            (np.maximum(moved, np.abs(np.diff(alongs[1:]))), speed, "m/s"),
+            (turned, turn, "rad/s"),
+        ):
+            rates = way / dt
+            high = bound * (1.0 + PROGRAM_EXCESS) + 2.0 * PATH_STEP / dt
+            self._tallies.speed.add(rows, rates, bound, ~(rates <= high), rates / high, unit)
+
+    def _add_acceleration(
+        self, rows: Integers, placed: Placed, alongs: Floats, near: tuple[Integers, Integers, Integers]
+    ) -> None:
+        """Along the way; where it passes a sharp corner in all: ACC along and ACC across are the most."""
+        legs, count = self._legs, len(rows)
+        before, leg, behind = near
+        allowed = np.where(placed.straight, legs.along[leg], legs.acc[leg])
+        for other in (before, behind):
+            allowed = np.where(other != leg, np.maximum(allowed, legs.acc[other]), allowed)
+        bound = np.concatenate([self._accelerations, allowed])
+        bound = np.max([bound[:-2], bound[1:-1], bound[2:]], axis=0)
+        self._accelerations = np.concatenate([self._accelerations, allowed])[-2:]
+        self._add_rates(rows, np.abs(np.diff(alongs, n=2)), bound)
+        points = np.concatenate([self._points, self._waiting.positions[1 : count + 1]])
+        self._points = points[-2:]
+        sharp = np.concatenate([self._sharp, placed.sharp])
+        self._sharp = sharp[-1:]
+        turns: NDArray[np.bool_] = sharp[1:] | sharp[:-1]
+        if turns.any():
+            change = np.linalg.norm(np.diff(points, n=2, axis=0), axis=1)
+            most = np.maximum(np.maximum(legs.acc[before], legs.acc[leg]), legs.acc[behind])
+            self._add_rates(rows[turns], change[turns], sqrt(2.0) * most[turns])
+
+    def _add_rates(self, rows: Integers, changes: Floats, bound: Floats) -> None:
+        rates = changes / self._dt**2
+        high = bound * (1.0 + PROGRAM_EXCESS) + 4.0 * PATH_STEP / self._dt**2
+        self._tallies.acceleration.add(rows, rates, bound, ~(rates <= high), rates / high, "m/s2")
+
+    def _add_end(self, waiting: _Waiting) -> None:
+        """The chain ends at its last target, all of its way having been run."""
+        row, goal = self._lasts[-1:], self._chain[-1].end.pose
+        assert goal is not None
+        off = np.linalg.norm((waiting.positions[-1] - goal[0])[None], axis=1)
+        self._tallies.goal[0].add(row, off, PATH_POSITION)
+        turned = angle_between(waiting.rotations[-1], goal[1])[None]
+        self._tallies.goal[1].add(row, turned, PATH_ORIENTATION)
+        missing = np.array([self._way.left - float(self._alongs[-1])])
+        self._tallies.progress.add(row, missing, PATH_POSITION, rank=missing / PATH_POSITION, unit="m")
