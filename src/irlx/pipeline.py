@@ -26,6 +26,7 @@ from irlx.pacing.lookahead import Lookahead
 from irlx.pacing.notes import Notes
 from irlx.pacing.pacer import Pacer
 from irlx.pacing.pauses import PauseAborted, PauseFunction
+from irlx.pacing.resolution import EVERY_TICK, Resolution
 from irlx.pacing.situation import PacingSetup
 from irlx.program import Program
 from irlx.report.recording import Recording
@@ -44,12 +45,19 @@ class Execution:
     `channels` are what it reads and writes; `left_open` warns of files that were open at its end.
     """
 
-    def __init__(self, job: Job) -> None:
+    def __init__(self, job: Job, resolution: Resolution = EVERY_TICK) -> None:
         self.job = job
         cell = job.cell
         dt = job.tick_ns / 1e9
         setup = PacingSetup(
-            kinematics_of(cell), cell.limits, cell.weights, cell.start, dt, (), job.max_slow, job.inputs
+            kinematics_of(cell),
+            cell.limits,
+            cell.weights,
+            cell.start,
+            dt,
+            max_slow=job.max_slow,
+            inputs=job.inputs,
+            resolution=resolution,
         )
         self.kinematics = setup.kinematics
         self._pacer = Pacer(setup, self._locate)

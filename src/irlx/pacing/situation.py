@@ -15,6 +15,7 @@ from irlx.pacing.demand import DemandModifier
 from irlx.pacing.inputs import Inputs
 from irlx.pacing.notes import Notes
 from irlx.pacing.options import LimitsInForce, Options, limits_in_force
+from irlx.pacing.resolution import EVERY_TICK, Resolution
 from irlx.pacing.slowdown.model import Model
 from irlx.robot.description import RobotDescription
 from irlx.robot.kinematics import Kinematics
@@ -29,7 +30,8 @@ Array = NDArray[np.float64]
 class PacingSetup:
     """The robot as a run finds it: model, own limits, weights (n,), start posture (n,), tick in s.
 
-    A move may take `max_slow` times as long as programmed, and a tick; `inputs` are what the world says.
+    A move may take `max_slow` times as long as programmed, and a tick; `inputs` are what the world says;
+    `resolution` tells how finely motions are worked out.
     """
 
     kinematics: Kinematics
@@ -40,6 +42,7 @@ class PacingSetup:
     modifiers: Sequence[DemandModifier] = ()
     max_slow: float = inf
     inputs: Inputs = field(default_factory=Inputs)
+    resolution: Resolution = EVERY_TICK
 
 
 @dataclass(frozen=True)
