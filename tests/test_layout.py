@@ -23,7 +23,16 @@ ORDER = (
     "cli",
 )
 """Folders of the package; each may import from those before it and from itself."""
-WIRING = {"job", "pipeline", "program", "checking", "verification", "registration", "conformance"}
+WIRING = {
+    "job",
+    "pipeline",
+    "program",
+    "checking",
+    "dry_run",
+    "verification",
+    "registration",
+    "conformance",
+}
 """Modules that wire stages together: only the command line, the package itself and they import them."""
 ANYWHERE = {"_version", "promises"}
 

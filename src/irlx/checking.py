@@ -4,22 +4,34 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from irlx.diagnostics import Diagnostic, IrlxError
 from irlx.interpreter.support import unsupported
 from irlx.language import tree
 from irlx.language.data_lists import in_order
-from irlx.language.suppression import unused_finding, without_ignored
+from irlx.language.suppression import BY_MOTION, unused_finding, without_ignored
 from irlx.program import ProgramError, analyse_file
+
+if TYPE_CHECKING:
+    from irlx.job import InputsGiven
 
 PathLike = str | os.PathLike[str]
 
 
-def check(program: PathLike, cell: PathLike | None = None) -> list[Diagnostic]:
+def check(
+    program: PathLike,
+    cell: PathLike | None = None,
+    motion: bool = False,
+    max_steps: int | None = None,
+    inputs: InputsGiven = None,
+) -> list[Diagnostic]:
     """All findings on a program, and on a cell file where one is given; raises nothing for its input.
 
     Names of frames and the number of joints come from `cell`, or from the cell that a run would find; of that
-    one nothing else is looked at. Without `cell` this loads neither numpy nor Pinocchio.
+    one nothing else is looked at. With `motion` a program without errors is executed in a dry run, at a
+    coarse tick, in the cell that a run would take; `max_steps` and `inputs` are those of `irlx.run`. Without
+    `cell` and `motion` this loads neither numpy nor Pinocchio.
     """
     joints, of_cell = _cell_findings(cell) if cell is not None else (None, [])
     try:
@@ -29,10 +41,34 @@ def check(program: PathLike, cell: PathLike | None = None) -> list[Diagnostic]:
     found = list(analysis.diagnostics)
     if isinstance(analysis.tree, tree.Program):
         later = unsupported(analysis.tree, analysis.source, analysis.data_lists, analysis.modules)
+        moves = motion and not any(one.is_error for one in (*found, *later, *of_cell))
+        if moves:
+            in_motion, of_cell = _motion_findings(program, cell, max_steps, inputs)
+            later = [*later, *in_motion]
         kept, unused = without_ignored(later, analysis.ignores)
         found += kept
-        found += [unused_finding(one) for one in unused if one.place.text is analysis.source]
+        known_later = frozenset() if moves else BY_MOTION
+        found += [
+            unused_finding(one)
+            for one in unused
+            if one.place.text is analysis.source and one.code not in known_later
+        ]
     return [*in_order(found, analysis.source, analysis.data_lists), *of_cell]
+
+
+def _motion_findings(
+    program: PathLike, cell: PathLike | None, max_steps: int | None, inputs: InputsGiven
+) -> tuple[list[Diagnostic], list[Diagnostic]]:
+    """Findings of a dry run, and those on the cell that it took or did not find."""
+    # Imported here: motion loads numpy, and most checks have none.
+    from irlx.dry_run import dry_run
+    from irlx.job import prepare
+
+    try:
+        job = prepare(program, cell, max_steps=max_steps, inputs=inputs)
+        return dry_run(job), list(job.cell.warnings)
+    except IrlxError as error:
+        return [], list(error.diagnostics)
 
 
 def _cell_findings(cell: PathLike) -> tuple[tuple[str, ...], list[Diagnostic]]:

@@ -31,6 +31,7 @@ from irlx.pacing.lookahead import Lookahead
 from irlx.pacing.notes import Notes
 from irlx.pacing.pacer import Pacer
 from irlx.pacing.pauses import PauseAborted, PauseFunction
+from irlx.pacing.resolution import EVERY_TICK, Resolution
 from irlx.pacing.situation import PacingSetup
 from irlx.program import Program
 from irlx.report.recording import Recording
@@ -54,7 +55,7 @@ class Execution:
     `channels` are what it reads and writes; `left_open` warns of files that were open at its end.
     """
 
-    def __init__(self, job: Job, planned_share: float = 1.0) -> None:
+    def __init__(self, job: Job, resolution: Resolution = EVERY_TICK, planned_share: float = 1.0) -> None:
         self.job = job
         cell = job.cell
         dt = job.tick_ns / 1e9
@@ -64,10 +65,10 @@ class Execution:
             cell.weights,
             cell.start,
             dt,
-            (),
-            job.max_slow,
-            job.inputs,
-            planned_share,
+            max_slow=job.max_slow,
+            inputs=job.inputs,
+            resolution=resolution,
+            planned_share=planned_share,
         )
         self.kinematics = setup.kinematics
         self._pacer = Pacer(setup, self._locate)
@@ -340,7 +341,7 @@ def stream(
     job = prepare(program, cell, tick_ms, max_slow, max_steps, inputs, *channels, pause_s, on_pause)
     if correct is None:
         return SampleStream(_samples(job))
-    execution = Execution(job, 1.0 - CORRECTION_SHARE)
+    execution = Execution(job, planned_share=1.0 - CORRECTION_SHARE)
     if execution.kinematics.constraints:
         names = ", ".join(one.name for one in execution.kinematics.constraints)
         raise IrlxError(report("IRL583", names=names))

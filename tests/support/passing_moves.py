@@ -1,7 +1,7 @@
 """Moves that pass their targets, made by hand for the gantry: curves, their blends and the rows along them.
 
-Blends by scipy's polynomials in Bernstein form from derivatives, splines by its CubicSpline; ways by tables of
-small chords. Nothing of irlx makes a row.
+Blends by scipy's polynomials in Bernstein form from derivatives, splines by its CubicSpline; ways by tables
+of small chords. Nothing of irlx makes a row.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Piece:
-    """A stretch of a way: poses by the length from its start; where the corner lies on it, if it is a blend."""
+    """A stretch of a way: poses by the length from its start; where the corner lies on it, of a blend."""
 
     length: float
     pose: Callable[[Vector], tuple[Vector, Rotation]]

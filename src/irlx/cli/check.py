@@ -6,10 +6,15 @@ import argparse
 import sys
 from typing import Any
 
+from irlx.cli.execution import add_execution_options, add_plugin_option, import_plugins
 from irlx.diagnostics import Diagnostic
 from irlx.diagnostics.rendering import MACHINE_FORMATS
 
-_EXAMPLE = "example:\n  irlx check programs/koch/square.irl --cell programs/koch/square.toml\n"
+_EXAMPLE = """\
+examples:
+  irlx check programs/koch/square.irl --cell programs/koch/square.toml
+  irlx check programs/koch/square_slow.irl --motion
+"""
 
 
 def add_parser(commands: Any) -> None:
@@ -17,12 +22,17 @@ def add_parser(commands: Any) -> None:
     parser = commands.add_parser(
         "check",
         help="look for mistakes in programs, without running them",
-        description="Look for mistakes in programs, without running them.",
+        description="Look for mistakes in programs without running them; with --motion also in what moves.",
         epilog=_EXAMPLE,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("programs", nargs="+", metavar="P.irl", help="program, module or data list files")
     parser.add_argument("--cell", metavar="C.toml", help="check this cell file, too")
+    parser.add_argument(
+        "--motion", action="store_true", help="also execute the programs in a dry run, at a coarse tick"
+    )
+    add_execution_options(parser)
+    add_plugin_option(parser)
     parser.add_argument(
         "--format",
         choices=["text", *MACHINE_FORMATS],
@@ -37,7 +47,9 @@ def command(options: argparse.Namespace) -> int:
     from irlx.checking import check
     from irlx.cli.output import exit_code
 
-    checked = [(program, check(program, options.cell)) for program in options.programs]
+    import_plugins(options.plugin)
+    asked = options.cell, options.motion, options.max_steps, options.inputs
+    checked = [(program, check(program, *asked)) for program in options.programs]
     if options.format == "text":
         _print_text(checked)
     else:

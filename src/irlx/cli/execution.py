@@ -6,7 +6,7 @@ import argparse
 import sys
 from typing import IO
 
-__all__ = ["add_execution_options", "standard_input"]
+__all__ = ["add_execution_options", "add_plugin_option", "import_plugins", "standard_input"]
 
 
 def add_execution_options(parser: argparse.ArgumentParser) -> None:
@@ -23,6 +23,25 @@ def add_execution_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--files", metavar="DIR", help="folder in which OPEN finds and makes files (default: the program's)"
     )
+
+
+def add_plugin_option(parser: argparse.ArgumentParser) -> None:
+    """Add `--plugin`."""
+    parser.add_argument(
+        "--plugin",
+        action="append",
+        default=[],
+        metavar="M",
+        help="import a module or a .py file that registers criteria of your own; may be given several times",
+    )
+
+
+def import_plugins(names: list[str]) -> None:
+    """Import what `--plugin` names. Raises IrlxError, IRL009, for one that cannot be imported."""
+    for name in names:
+        from irlx.cli.plugin import import_plugin
+
+        import_plugin(name)
 
 
 def standard_input() -> IO[bytes] | None:

@@ -12,7 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, cast
 
-from irlx.cli.execution import add_execution_options, standard_input
+from irlx.cli.execution import add_execution_options, add_plugin_option, import_plugins, standard_input
 from irlx.cli.program_text import ProgramText
 
 if TYPE_CHECKING:
@@ -68,13 +68,7 @@ def add_parser(commands: Any) -> None:
         metavar="N",
         help="also tell what decided tick N: demand, bounds of every joint with their source, criteria",
     )
-    parser.add_argument(
-        "--plugin",
-        action="append",
-        default=[],
-        metavar="M",
-        help="import a module or a .py file that registers criteria of your own; may be given several times",
-    )
+    add_plugin_option(parser)
     parser.add_argument(
         "--write-data",
         action="store_true",
@@ -135,10 +129,7 @@ def _prepared(options: argparse.Namespace, text: ProgramText) -> tuple[Job, list
     from irlx.program import load
 
     try:
-        for name in options.plugin:
-            from irlx.cli.plugin import import_plugin
-
-            import_plugin(name)
+        import_plugins(options.plugin)
         # Before the numeric libraries are imported: a mistake in the text is told at once.
         program = load(options.program, options.cell)
         from irlx.job import prepare

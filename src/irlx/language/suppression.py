@@ -8,18 +8,29 @@ from dataclasses import dataclass
 
 from irlx.diagnostics import CATALOGUE, Diagnostic, Place, Severity, SourceText, Span, report
 from irlx.diagnostics.codes.lints import LINTS
+from irlx.diagnostics.codes.pacing import PACING
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.language.data_lists import ImportedList, Imports
 from irlx.language.lexing import lex
 from irlx.language.parser import Parse
 from irlx.language.tree import DataList
 
-__all__ = ["Ignore", "Ignores", "after_ignoring", "read_ignores", "unused_finding", "without_ignored"]
+__all__ = [
+    "BY_MOTION",
+    "Ignore",
+    "Ignores",
+    "after_ignoring",
+    "read_ignores",
+    "unused_finding",
+    "without_ignored",
+]
 
 _COMMENT = re.compile(
     r"(?:\{|\(\*)\s*irlx\s*:\s*(?:ignore\b(?P<codes>.*?)|.*?)(?:\}|\*\))", re.IGNORECASE | re.DOTALL
 )
-_FOUND_LATER = frozenset({"IRL363", "IRL591"})
+BY_MOTION = frozenset(entry.id for entry in PACING if entry.severity is not Severity.ERROR)
+"""Codes that only motion gives: of a run, or of a dry run."""
+_FOUND_LATER = frozenset({"IRL363", "IRL591"}) | BY_MOTION
 """Codes that only a look at what can be executed gives."""
 _BY_LINTS = frozenset(lint.id for lint in LINTS)
 """Codes that only a check looks for, and a run does not."""

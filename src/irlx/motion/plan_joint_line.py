@@ -38,16 +38,20 @@ class PlannedJointLine:
     law: TimeLaw
     ticks: int
 
-    def postures(self, dt: float) -> Array:
-        """Joint values of ticks 1 .. ticks, shape (ticks, n), the last one exactly the end."""
-        share, _ = self.law.evaluate(dt * np.arange(1.0, self.ticks + 1.0))
+    def postures(self, dt: float, rows: int | None = None) -> Array:
+        """Joint values of ticks 1 .. ticks, shape (ticks, n), the last one exactly the end.
+
+        With `rows` fewer of them (rows, n), spread evenly over the ticks.
+        """
+        rows = self.ticks if rows is None else rows
+        share, _ = self.law.evaluate(self.ticks / rows * dt * np.arange(1.0, rows + 1.0))
         share[-1:] = 1.0
-        rows = self.start + share[:, None] * (self.end - self.start)
-        rows[-1:] = self.end
+        q = self.start + share[:, None] * (self.end - self.start)
+        q[-1:] = self.end
         still = self.start == self.end
         # -0.0 + 0.0 is 0.0: a joint that does not move keeps its very bits.
-        rows[:, still] = self.start[still]
-        return np.asarray(rows)
+        q[:, still] = self.start[still]
+        return np.asarray(q)
 
 
 def plan_joint_line(

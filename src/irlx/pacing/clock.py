@@ -17,16 +17,19 @@ class Clock:
     """Way `s` (N,) and rate ds/dt `rate` (N,) of the path at ticks 1 .. N after the start.
 
     s never falls, ends at the whole way, and starts and ends at rest; it says nothing of where the
-    path lies, so another clock can be put in its place from any tick on.
+    path lies, so another clock can be put in its place from any tick on. In a dry run a row of it stands
+    for `ticks_a_row` ticks.
     """
 
     s: Array
     rate: Array
+    ticks_a_row: float = 1.0
 
     def __len__(self) -> int:
         return int(self.s.shape[0])
 
 
-def programmed_clock(law: TimeLaw, ticks: int, dt: float) -> Clock:
-    """Clock of the programmed time law over a whole number of ticks of `dt` s."""
-    return Clock(*law.evaluate(dt * np.arange(1.0, ticks + 1.0)))
+def programmed_clock(law: TimeLaw, ticks: int, dt: float, rows: int | None = None) -> Clock:
+    """Clock of the programmed time law over a whole number of ticks of `dt` s, in as many rows or fewer."""
+    rows = ticks if rows is None else rows
+    return Clock(*law.evaluate(ticks / rows * dt * np.arange(1.0, rows + 1.0)), ticks / rows)

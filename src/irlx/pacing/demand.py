@@ -40,7 +40,8 @@ def demands(
     along, turning = path.derivatives(clock.s)
     twists = np.hstack([along, turning]) * clock.rate[:, None]
     for k in range(len(clock)):
-        demand = Demand(first_tick + k, float(clock.s[k]), poses.position[k], poses.rotation[k], twists[k])
+        tick = first_tick - 1 + round((k + 1) * clock.ticks_a_row)
+        demand = Demand(tick, float(clock.s[k]), poses.position[k], poses.rotation[k], twists[k])
         for modify in modifiers:
             demand = modify(demand)
         yield demand

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,10 +54,12 @@ def _moved(
         situation.warnings.extend(posture_left(left, why, robot, place))
     if plan.ticks == 0:
         return None
-    q = plan.postures(dt)
-    _check_rows(situation, q, in_force.limits, place)
+    rows = situation.setup.resolution.rows_of(plan.ticks)
+    q = plan.postures(dt, rows)
+    _check_rows(situation, q, in_force.limits, dt * plan.ticks / rows, place)
     check_conditions(q, situation.kinematics, place)
-    return _rows(situation, block, q, programmed_clock(plan.law, plan.ticks, dt).s)
+    s = programmed_clock(plan.law, plan.ticks, dt, rows).s
+    return replace(_rows(situation, block, q, s), span=plan.ticks + 1)
 
 
 def _rows(situation: Situation, block: MoveBlock, q: Array, s: Array) -> MotionRows:
@@ -78,8 +81,8 @@ def _rows(situation: Situation, block: MoveBlock, q: Array, s: Array) -> MotionR
     )
 
 
-def _check_rows(situation: Situation, q: Array, limits: JointLimits, place: Place) -> None:
-    broken = broken_bound(situation.q, held(q), limits, situation.dt)
+def _check_rows(situation: Situation, q: Array, limits: JointLimits, dt: float, place: Place) -> None:
+    broken = broken_bound(situation.q, held(q), limits, dt)
     if broken is not None:
         raise PacingError(explain_broken_row(broken, situation.tick + 1, situation.robot, place))
 

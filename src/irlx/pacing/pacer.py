@@ -34,6 +34,7 @@ from irlx.blocks import (
 )
 from irlx.diagnostics import Diagnostic, Place
 from irlx.pacing.answers import answer_of_bounds, answer_of_last_move, answer_of_posture, way_of
+from irlx.pacing.beyond import posture_beyond, ticks_beyond
 from irlx.pacing.executed import Executed
 from irlx.pacing.inputs import answer_of_inputs
 from irlx.pacing.joint_moves import move_joints
@@ -146,6 +147,16 @@ class Pacer:
                 waiting.insert(0, motion.rest)
                 begins = False
 
+    def stand_beyond(self, move: MoveBlock) -> None:
+        """Put the robot where it would stand behind a move that it cannot do, and the time with it.
+
+        For a dry run alone. Raises PacingError or MotionError where no posture is there; it stays then.
+        """
+        situation, place = self._situation, self.locate(move.origin)
+        end = posture_beyond(situation, move, situation.in_force(move.limits), place)
+        self.tick += ticks_beyond(situation, move, place)
+        self.q = end
+
     def execute(self, block: Block) -> MotionRows | None:
         """Execute one block; returns the rows of a move (None for a switch or a move of no length).
 
@@ -200,12 +211,12 @@ class Pacer:
         if rows is None:
             return None
         self.q = rows.q[-1]
-        self.tick += len(rows)
+        self.tick += rows.ticks
         return replace(rows, limits=in_force.limits)
 
     def _wait(self, block: WaitBlock | PauseBlock, place: Place) -> MotionRows | None:
         setup = self.setup
-        rows = waited(block, self.q, setup.dt, self.tick + 1, setup.kinematics, place)
+        rows = waited(block, self.q, setup.dt, self.tick + 1, setup.kinematics, place, setup.resolution)
         return self._moved(rows, self._situation.in_force())
 
     def _reconfigure(self, block: ReconfigureBlock) -> MotionRows | None:
@@ -213,8 +224,9 @@ class Pacer:
         in_force = situation.in_force()
         check_inside(self.q, self._robot, in_force.limits, place)
         konf = asked_posture(block.target, situation, in_force, place)
-        dt, model = self.setup.dt, situation.model(in_force)
-        found = reconfigured(model, block, self.q, konf, dt, self.tick + 1, place, self.qp)
+        setup, model = self.setup, situation.model(in_force)
+        first, fine = self.tick + 1, setup.resolution
+        found = reconfigured(model, block, self.q, konf, setup.dt, first, place, self.qp, fine)
         left = found.flow.remaining
         why = why_left(found.flow.end, left, found.held, self._robot)
         self.warnings += posture_left(left, why, self._robot, place)

@@ -13,6 +13,7 @@ from irlx.motion.plan_path import PlannedPath
 from irlx.pacing.clock import Clock, programmed_clock
 from irlx.pacing.demand import Demand, DemandModifier, demands
 from irlx.pacing.posture_term import PostureTerm
+from irlx.pacing.resolution import EVERY_TICK, Resolution
 from irlx.pacing.row_check import BrokenBound, broken_bound
 from irlx.pacing.slowdown.model import Model
 from irlx.pacing.slowdown.planned import MotionTask, PlannedMotion, Refusal, Ticking, plan_motion
@@ -67,6 +68,7 @@ class PathMotion:
     first_tick: int
     ticks_of: Callable[[float], int]
     modifiers: Sequence[DemandModifier] = ()
+    resolution: Resolution = EVERY_TICK
 
     def demands_of(self, clock: Clock) -> list[Demand]:
         """Demands of the ticks of a clock, modifiers applied."""
@@ -111,22 +113,24 @@ def _walked(
     motion: PathMotion, model: Model, solver: TickSolver, thorough: bool
 ) -> tuple[Walk, BrokenBound | None]:
     """The walk at the programmed speed, and the first bound that its rows pass."""
-    clock = programmed_clock(motion.plan.law, motion.plan.ticks, motion.dt)
-    advance = np.diff(clock.s, prepend=0.0)
-    first = motion.first_tick
+    ticks = motion.plan.ticks
+    clock = programmed_clock(motion.plan.law, ticks, motion.dt, motion.resolution.rows_of(ticks))
+    asked = motion.demands_of(clock)
+    advance = dict(zip((demand.tick for demand in asked), np.diff(clock.s, prepend=0.0), strict=True))
+    dt = motion.dt * clock.ticks_a_row
     walked = walk(
         solver,
-        StepLimiter(model.limits, motion.dt),
-        lambda demand: motion.term.at(demand.s, float(advance[demand.tick - first])),
+        StepLimiter(model.limits, dt),
+        lambda demand: motion.term.at(demand.s, float(advance[demand.tick])),
         model.free,
         motion.start,
-        motion.demands_of(clock),
+        asked,
         thorough,
     )
     if walked.halt is not None:
         return walked, None
     held = np.vstack([walked.q, walked.q[-1:]])
-    return walked, broken_bound(motion.start, held, model.limits, motion.dt)
+    return walked, broken_bound(motion.start, held, model.limits, dt)
 
 
 def _as_walked(motion: PathMotion, walked: Walk) -> PacedPath:
@@ -140,7 +144,7 @@ def _task(motion: PathMotion) -> MotionTask:
         motion.plan.programmed.acc,
         motion.start,
         motion.term.at,
-        Ticking(motion.dt, motion.ticks_of, motion.demands_of),
+        Ticking(motion.dt, motion.ticks_of, motion.demands_of, motion.resolution),
         motion.term.draws,
         motion.term.through,
     )
@@ -149,13 +153,14 @@ def _task(motion: PathMotion) -> MotionTask:
 def _planned(motion: PathMotion, model: Model, found: PlannedMotion) -> PacedPath:
     clock = found.timed.clock
     rates = motion.plan.programmed.rates_at(clock.s)
+    dt = motion.dt * (found.demands[-1].tick + 1 - motion.first_tick) / len(found.q)
     return PacedPath(
         found.q,
-        touching(motion.start, found.q, model.limits, motion.dt),
+        touching(motion.start, found.q, model.limits, dt),
         found.demands,
         0,
         motion.term,
-        slowings(clock, rates, found.factor, motion.dt, len(found.q)),
+        slowings(clock, rates, found.factor, dt, len(found.q)),
         True,
     )
 

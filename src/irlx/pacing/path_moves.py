@@ -61,11 +61,11 @@ def _legs(situation: Situation, moves: Sequence[MoveBlock]) -> list[Leg]:
         told = posed(move, situation.kinematics, start, situation.q)
         check_targets(told, situation.kinematics, situation.q, situation.locate(move.origin))
         legs.append(Leg(told, situation.locate(move.origin)))
-        start = _end(told, start, legs[-1].place)
+        start = end_of_move(told, start, legs[-1].place)
     return legs
 
 
-def _end(move: MoveBlock, start: Pose, place: Place) -> Pose:
+def end_of_move(move: MoveBlock, start: Pose, place: Place) -> Pose:
     """Where a move ends that starts at a pose: a CIRCLE with ANGLE elsewhere than at its target."""
     if move.arc is None or move.arc.angle is None:
         return end_pose(move, start)
@@ -123,7 +123,8 @@ def _path_motion(situation: Situation, plan: PlannedChain, term: PostureTerm, pl
             raise PacingError(slower_than_allowed(duration, plan.programmed.duration, longest, place))
         return ticks_of_move(duration, dt, place)
 
-    return PathMotion(plan, situation.q, term, dt, situation.tick + 1, ticks_of, setup.modifiers)
+    first, changes, fine = situation.tick + 1, setup.modifiers, setup.resolution
+    return PathMotion(plan, situation.q, term, dt, first, ticks_of, changes, fine)
 
 
 def _rows(situation: Situation, block: MoveBlock, plan: PlannedChain, paced: PacedPath) -> MotionRows:
@@ -154,6 +155,7 @@ def _rows(situation: Situation, block: MoveBlock, plan: PlannedChain, paced: Pac
             paced.slowings,
             situation.free,
         ),
+        span=paced.demands[-1].tick + 1 - situation.tick,
     )
 
 

@@ -17,6 +17,7 @@ from irlx.pacing.clock import Clock
 from irlx.pacing.demand import Demand
 from irlx.pacing.errors import PacingError
 from irlx.pacing.impossible import explain_broken_row
+from irlx.pacing.resolution import EVERY_TICK, Resolution
 from irlx.pacing.rows import MotionRows
 from irlx.pacing.slowdown.clock import plan_clock
 from irlx.pacing.slowdown.clock_bounds import clock_bounds
@@ -54,6 +55,7 @@ def reconfigured(
     first_tick: int,
     place: Place,
     qp: QpSolver,
+    resolution: Resolution = EVERY_TICK,
 ) -> Reconfigured:
     """Motion from rest at posture q (n,) along the fibre of its tool pose to konf (n,) or the nearest to it.
 
@@ -67,8 +69,8 @@ def reconfigured(
     flow = posture_flow(model.kinematics, q, konf, model.weights, limits, free, qp)
     if len(flow.points) == 1:
         return Reconfigured(flow, None, ~free)
-    rows, way = _rows(mobile, flow, dt, first_tick, place)
-    return Reconfigured(flow, _motion_rows(model, block, q, rows, way, dt, first_tick), ~free)
+    found = _planned(mobile, flow, _ticking(mobile, q, dt, place, resolution), first_tick, place)
+    return Reconfigured(flow, _motion_rows(model, block, q, found, dt, first_tick), ~free)
 
 
 def working_limits(model: Model, block: ReconfigureBlock) -> JointLimits:
@@ -92,45 +94,57 @@ def _either_way(limits: JointLimits, kind: str) -> Array:
     return np.asarray(np.minimum(-lower, upper))
 
 
-def _rows(model: Model, flow: PostureFlow, dt: float, first_tick: int, place: Place) -> tuple[Array, Array]:
-    """Rows (N, n) at ticks 1 .. N along the way of a flow, and the way (N,) at them.
+def _ticking(model: Model, q: Array, dt: float, place: Place, resolution: Resolution) -> Ticking:
+    """Ticks at which the tool keeps the pose of posture q (n,)."""
+    rotation, position = model.kinematics.tool_pose(q)
+
+    def demands_of(clock: Clock) -> list[Demand]:
+        ticks = (round((k + 1) * clock.ticks_a_row) for k in range(len(clock)))
+        return [
+            Demand(tick, float(s), position, rotation, np.zeros(6))
+            for tick, s in zip(ticks, clock.s, strict=True)
+        ]
+
+    return Ticking(dt, lambda duration: ticks_of_move(duration, dt, place), demands_of, resolution)
+
+
+def _planned(
+    model: Model, flow: PostureFlow, ticking: Ticking, first_tick: int, place: Place
+) -> PlannedMotion:
+    """Rows at ticks 1 .. N along the way of a flow.
 
     A curve that swings beyond a position limit between its points is laid further inside and tried again.
     """
-    found = _on_curve(model, flow.points, dt, place)
+    found = _on_curve(model, flow.points, ticking)
     for widening in _WIDENINGS:
         if not isinstance(found, Refusal):
             break
-        found = _on_curve(model, flow.further_inside(widening), dt, place)
+        found = _on_curve(model, flow.further_inside(widening), ticking)
     if isinstance(found, Refusal):
         if found.broken is None:
             raise ArithmeticError("a posture curve was refused without a reason: the planner is at fault")
         raise PacingError(explain_broken_row(found.broken, first_tick, model.kinematics.description, place))
-    return found.q, np.array([demand.s for demand in found.demands])
+    return found
 
 
-def _on_curve(model: Model, points: Array, dt: float, place: Place) -> PlannedMotion | Refusal:
+def _on_curve(model: Model, points: Array, ticking: Ticking) -> PlannedMotion | Refusal:
     """Rows along the curve through points (K, n) on its fastest clock."""
     knots = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))))
     curve = JointCurve(knots, points)
     clock = plan_clock(clock_bounds(curve, model.limits, np.full(knots.size, inf), inf))
     if clock is None:
         raise ArithmeticError("a curve has no clock from rest to rest: the clock planner is at fault")
-    rotation, position = model.kinematics.tool_pose(points[0])
-
-    def demands_of(ticking: Clock) -> list[Demand]:
-        return [Demand(k + 1, float(s), position, rotation, np.zeros(6)) for k, s in enumerate(ticking.s)]
-
-    ticking = Ticking(dt, lambda duration: ticks_of_move(duration, dt, place), demands_of)
     return rows_on_clock(model, TimedCurve(curve, clock), ticking, 0.0)
 
 
 def _motion_rows(
-    model: Model, block: ReconfigureBlock, q: Array, rows: Array, way: Array, dt: float, first_tick: int
+    model: Model, block: ReconfigureBlock, q: Array, found: PlannedMotion, dt: float, first_tick: int
 ) -> MotionRows:
     """Rows with their hold tick, the tool measured against its pose at the start."""
-    kinematics = model.kinematics
+    kinematics, rows, ticks = model.kinematics, found.q, found.demands[-1].tick
+    way = np.array([demand.s for demand in found.demands])
     held = np.vstack([rows, rows[-1:]])
+    touched = touching(q, rows, model.limits, dt * ticks / len(rows))
     start_rotation, start_position = kinematics.tool_pose(q)
     rotation, position = kinematics.tool_poses(held)
     return MotionRows(
@@ -141,10 +155,11 @@ def _motion_rows(
         rotation,
         np.linalg.norm(position - start_position, axis=1),
         Rotation.from_matrix(start_rotation.T @ rotation).magnitude(),
-        np.vstack([touching(q, rows, model.limits, dt), np.zeros_like(held[:1], dtype=np.int8)]),
+        np.vstack([touched, np.zeros_like(touched[:1])]),
         np.append(way, way[-1]),
         float(way[-1]),
         0,
+        span=ticks + 1,
     )
 
 

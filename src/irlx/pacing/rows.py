@@ -49,7 +49,8 @@ class MotionRows:
     `q` (N, n) rad or m; `tool_position` (N, 3) m and `tool_rotation` (N, 3, 3) of the tool in the
     world; `path_position_error` (N,) m and `path_orientation_error` (N,) rad against the demanded
     pose; `active` (N, n): 0, or the sign of the side times (1 + BoundSource) of the bound that holds
-    a joint back; `s` (N,) path parameter of `length`; `iterations` Newton steps in all;
+    a joint back; `s` (N,) path parameter of `length`; `iterations` Newton steps in all; `span` ticks that the
+    rows of a dry run stand for, 0 where each is a tick;
     `limits` in force, None for the robot's own; `path`, None where no path was asked for.
     """
 
@@ -67,9 +68,15 @@ class MotionRows:
     limits: JointLimits | None = None
     path: PathPart | None = None
     stops: bool = True
+    span: int = 0
 
     def __len__(self) -> int:
         return int(self.q.shape[0])
+
+    @property
+    def ticks(self) -> int:
+        """Ticks that the motion takes, its hold tick included."""
+        return self.span or len(self)
 
 
 def held(rows: Array) -> Array:
@@ -103,6 +110,7 @@ def _part(
 ) -> MotionRows:
     first, last = span
     part = slice(first, last)
+    begin, end = _first_tick(rows, path, first), _first_tick(rows, path, last)
     # A stretch may reach into the moves beside it: it is told once, where it costs most.
     slowings = tuple(
         replace(found, first_row=found.first_row - first, last_row=found.last_row - first)
@@ -119,13 +127,21 @@ def _part(
     return replace(
         rows,
         block=block,
-        first_tick=rows.first_tick + first,
+        first_tick=begin,
+        span=end - begin,
         **{name: getattr(rows, name)[part] for name in _BY_ROW},
         length=way[1] - way[0],
         path=own,
         stops=last == len(rows),
         iterations=rows.iterations if first == 0 else 0,
     )
+
+
+def _first_tick(rows: MotionRows, path: PathPart, row: int) -> int:
+    """The first tick that a row stands for."""
+    if row == 0:
+        return rows.first_tick
+    return path.demands[row - 1].tick + 1 if row <= len(path.demands) else rows.first_tick + rows.ticks
 
 
 _BY_ROW = (

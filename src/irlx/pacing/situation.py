@@ -16,6 +16,7 @@ from irlx.pacing.demand import DemandModifier
 from irlx.pacing.inputs import Inputs
 from irlx.pacing.notes import Notes
 from irlx.pacing.options import LimitsInForce, Options, limits_in_force
+from irlx.pacing.resolution import EVERY_TICK, Resolution
 from irlx.pacing.slowdown.model import Model
 from irlx.robot.description import RobotDescription
 from irlx.robot.kinematics import Kinematics
@@ -30,8 +31,9 @@ Array = NDArray[np.float64]
 class PacingSetup:
     """The robot as a run finds it: model, own limits, weights (n,), start posture (n,), tick in s.
 
-    A move may take `max_slow` times as long as programmed, and a tick; `inputs` are what the world says.
-    Motions are planned with `planned_share` of each speed and acceleration limit.
+    A move may take `max_slow` times as long as programmed, and a tick; `inputs` are what the world says;
+    `resolution` tells how finely motions are worked out; motions are planned with `planned_share`
+    of each speed and acceleration limit.
     """
 
     kinematics: Kinematics
@@ -42,6 +44,7 @@ class PacingSetup:
     modifiers: Sequence[DemandModifier] = ()
     max_slow: float = inf
     inputs: Inputs = field(default_factory=Inputs)
+    resolution: Resolution = EVERY_TICK
     planned_share: float = 1.0
 
 

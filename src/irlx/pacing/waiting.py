@@ -11,6 +11,7 @@ from irlx.blocks import PauseBlock, WaitBlock
 from irlx.diagnostics import Place, report
 from irlx.motion.whole_ticks import MOST_TICKS
 from irlx.pacing.errors import PacingError
+from irlx.pacing.resolution import EVERY_TICK, Resolution
 from irlx.pacing.rows import MotionRows
 from irlx.promises import TICK_SHARE
 from irlx.robot.kinematics import Kinematics
@@ -30,6 +31,7 @@ def waited(
     first_tick: int,
     kinematics: Kinematics,
     place: Place,
+    resolution: Resolution = EVERY_TICK,
 ) -> MotionRows | None:
     """Rows of a robot that stands at q (n,) for the time of a WAIT or PAUSE; None where it takes no tick.
 
@@ -42,17 +44,19 @@ def waited(
     if ticks == 0:
         return None
     rotation, position = kinematics.tool_pose(q)
-    nothing = np.zeros(ticks)
+    rows = resolution.rows_of(ticks)
+    nothing = np.zeros(rows)
     return MotionRows(
         block,
         first_tick,
-        np.tile(q, (ticks, 1)),
-        np.tile(position, (ticks, 1)),
-        np.tile(rotation, (ticks, 1, 1)),
+        np.tile(q, (rows, 1)),
+        np.tile(position, (rows, 1)),
+        np.tile(rotation, (rows, 1, 1)),
         nothing,
         nothing,
-        np.zeros((ticks, q.size), dtype=np.int8),
+        np.zeros((rows, q.size), dtype=np.int8),
         nothing,
         1.0,
         0,
+        span=ticks,
     )

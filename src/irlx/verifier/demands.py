@@ -42,7 +42,7 @@ class Place:
 
 @dataclass(frozen=True, eq=False)
 class Demand:
-    """One move: where it starts, its targets in order (via point, points of a PATH, the last one), where it ends,
+    """One move: where it starts, its targets (via point, points of a PATH, the last one), where it ends,
     and whether it passes that on its way to the next move, or comes from one that did."""
 
     move: MoveRows

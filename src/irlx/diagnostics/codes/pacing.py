@@ -113,5 +113,23 @@ PACING = (
         "the spline turns back on itself at point {point} of the PATH, where it has no direction",
         "put a point beside the way, or use MOVE LIN PATH, which stops there",
     ),
+    warning(
+        "IRL445",
+        "limits make this move {lost} s longer than programmed, {share} %: at {way} of {length} the tool has "
+        "{achieved} of {requested}, for {held}",
+        "program a lower SPEED or ACC, widen the limit, or start the move from another posture",
+    ),
+    warning(
+        "IRL446",
+        "this move passes near a singular posture: at {way} of {length} the smallest singular value is "
+        "{sigma}, {share} % of the largest",
+        "lead the path round it, or start the move from another posture (RECONFIGURATION before it)",
+    ),
+    info(
+        "IRL447",
+        "the dry run ends here: what follows depends on where the robot stands, and that is not known since "
+        "the move of line {line}",
+        "correct that move, and check again",
+    ),
     error("IRL424", "the target puts {joint} at {value}, outside its limits {lower} to {upper}"),
 )

@@ -32,6 +32,17 @@ _NEAREST_CORNERS = 1e-4
 
 
 @dataclass(frozen=True)
+class Spacing:
+    """How far apart knots are: `factor` times the usual programmed times, and at least `least` intervals."""
+
+    factor: float = 1.0
+    least: int = LEAST_INTERVALS
+
+
+FINE = Spacing()
+
+
+@dataclass(frozen=True)
 class PathGrid:
     """Knots `s` (N + 1,) of the path parameter with their tool poses.
 
@@ -55,14 +66,15 @@ class PathGrid:
         return int(np.clip(np.argmin(np.abs(self.s - s)), 1, self.intervals - 1))
 
 
-def path_grid(path: PosePath, law: TimeLaw) -> PathGrid:
+def path_grid(path: PosePath, law: TimeLaw, spacing: Spacing = FINE) -> PathGrid:
     """Knots of a path that is programmed to be run by `law`.
 
     Pieces between the corners of the law are cut evenly, into intervals of about `STEP` at full
-    speed, at least `LEAST_INTERVALS` in all; a clock whose knots miss the corners loses 1E-3 of its time.
+    speed, at least `LEAST_INTERVALS` in all, or as `spacing` says; a clock whose knots miss the corners
+    loses 1E-3 of its time.
     """
-    step = float(np.clip(STEP * law.duration / LONG_MOTION * 4.0, STEP, LONG_STEP))
-    width = min(max(law.speed * step, path.length / MOST_INTERVALS), path.length / LEAST_INTERVALS)
+    step = spacing.factor * float(np.clip(STEP * law.duration / LONG_MOTION * 4.0, STEP, LONG_STEP))
+    width = min(max(law.speed * step, path.length / MOST_INTERVALS), path.length / spacing.least)
     corners = _apart(law.corners, _NEAREST_CORNERS * width)
     pieces = [
         np.linspace(start, end, max(1, int(np.ceil((end - start) / width - 1e-9))) + 1)[1:]

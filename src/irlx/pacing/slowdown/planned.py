@@ -13,6 +13,7 @@ from irlx.motion.pose_path import PosePath, Poses
 from irlx.motion.time_law import TimeLaw
 from irlx.pacing.clock import Clock
 from irlx.pacing.demand import Demand
+from irlx.pacing.resolution import EVERY_TICK, Resolution
 from irlx.pacing.row_check import BrokenBound, excess_of
 from irlx.pacing.slowdown.clock import PlannedClock
 from irlx.pacing.slowdown.drawn_end import with_drawn_end
@@ -74,12 +75,14 @@ class Refusal:
 class Ticking:
     """How a clock becomes ticks of `dt` s: `ticks_of` a duration, and `demands_of` a clock's ticks.
 
-    `ticks_of` may raise what a motion of too many ticks deserves.
+    `ticks_of` may raise what a motion of too many ticks deserves; `resolution` tells how many rows stand for
+    the ticks.
     """
 
     dt: float
     ticks_of: Callable[[float], int]
     demands_of: Callable[[Clock], Sequence[Demand]]
+    resolution: Resolution = EVERY_TICK
 
 
 @dataclass(frozen=True)
@@ -117,7 +120,7 @@ def plan_motion(model: Model, task: MotionTask) -> PlannedMotion | Refusal:
 
 def _planned(model: Model, task: MotionTask) -> PlannedMotion | Refusal:
     """The motion with the joints that are free, its reserve widened where rows pass a position limit."""
-    grid = path_grid(task.path, task.law)
+    grid = path_grid(task.path, task.law, task.ticking.resolution.spacing)
     reserve = RESERVE
     found: PlannedMotion | Refusal = Refusal(0.0)
     for _ in range(_RESERVES):
@@ -203,15 +206,16 @@ def rows_on_clock(model: Model, timed: TimedCurve, ticking: Ticking, least: floa
     found: PlannedMotion | Refusal = Refusal(0.0)
     for _ in range(_STRETCHES):
         ticks = ticking.ticks_of(duration)
+        rows = ticking.resolution.rows_of(ticks)
         whole = ticks * ticking.dt
         factor = whole / timed.clock.duration
-        demands = tuple(ticking.demands_of(_clock(timed.clock, ticks, ticking.dt, factor)))
+        demands = tuple(ticking.demands_of(_clock(timed.clock, ticks, rows, ticking.dt, factor)))
         q = resample(model, timed.curve, np.array([demand.s for demand in demands]), _poses(demands))
-        excess = excess_of(start, np.vstack([q, q[-1:]]), model.limits, ticking.dt)
+        excess = excess_of(start, np.vstack([q, q[-1:]]), model.limits, whole / rows)
         broken = excess.first
         if broken is None:
             return PlannedMotion(q, demands, timed, factor)
-        found = Refusal(demands[min(broken.row, ticks - 1)].s, broken=broken)
+        found = Refusal(demands[min(broken.row, rows - 1)].s, broken=broken)
         slower = max(excess.speed, np.sqrt(excess.acceleration)) * (1.0 + _STRETCH_MARGIN)
         duration = max(whole * slower, duration)
         if excess.position > 0.0 or slower > _LARGEST_STRETCH:
@@ -225,8 +229,8 @@ def _poses(demands: Sequence[Demand]) -> Poses:
     )
 
 
-def _clock(planned: PlannedClock, ticks: int, dt: float, factor: float) -> Clock:
-    """Whole ticks of a planned clock that runs `factor` times slower; the last one is the end."""
-    s, rate = planned.at(dt * np.arange(1.0, ticks + 1.0) / factor)
+def _clock(planned: PlannedClock, ticks: int, rows: int, dt: float, factor: float) -> Clock:
+    """Rows of whole ticks of a planned clock that runs `factor` times slower; the last one is the end."""
+    s, rate = planned.at(ticks / rows * dt * np.arange(1.0, rows + 1.0) / factor)
     s[-1], rate[-1] = planned.s[-1], 0.0
-    return Clock(s, rate / factor)
+    return Clock(s, rate / factor, ticks / rows)

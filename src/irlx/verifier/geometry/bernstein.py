@@ -40,7 +40,7 @@ MOST_STEPS, LAST_STEP = 40, 1e-13
 def nearest_parameters(
     jet: Callable[[Floats], Jets], positions: Floats, seeds: Floats, cell: float, most: float
 ) -> Floats:
-    """Parameters (R,) in 0..`most` of the points nearest to positions (R, 3), each within a `cell` of its seed.
+    """Parameters (R,) in 0..`most` of the points nearest to positions (R, 3), within a `cell` of their seeds.
 
     Newton's method on the way along the curve that is left; a step that leaves the bracket halves it instead.
     """

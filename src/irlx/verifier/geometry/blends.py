@@ -124,7 +124,7 @@ def _jet(curve: Curve, way: float) -> tuple[Floats, Floats, Floats]:
 def _flattest(
     start: tuple[Floats, Floats, Floats], end: tuple[Floats, Floats, Floats], tangents: Floats
 ) -> Floats:
-    """Control points (6, 3) of the join, with one of some tangents (T,), whose largest curvature is the least."""
+    """Control points (6, 3) of the join with that of some tangents (T,) whose largest curvature is least."""
     half = 0.5 * float(np.arctan2(np.linalg.norm(np.cross(start[1], end[1])), start[1] @ end[1]))
     arc = float(np.linalg.norm(end[0] - start[0])) / float(np.sinc(half / np.pi))
     found = np.stack(
