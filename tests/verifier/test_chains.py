@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -143,7 +144,7 @@ def polyline(kit, blend=CORNER, distances=(0.04, 0.04, 0.05), stops=False) -> ob
 def with_stops(places: np.ndarray) -> np.ndarray:
     """Ways that come to rest at each place, with a row more there."""
     found = []
-    for begin, end in zip(places[:-1], places[1:], strict=True):
+    for begin, end in pairwise(places):
         ways = begin + trapezoid(end - begin, 0.1, 0.4, DT)
         ways[-1] = end
         found += [ways, [end]]
