@@ -244,7 +244,8 @@ def _bounds(path: JointPath, k: int, cuts: Array, law: MotionLaw, limits: JointL
         bound = np.min(np.where(steep > 0.0, left / steep, np.inf), axis=1)
     scale = law.override
     jerk = bound / RISE_TIME
-    return Sections(np.diff(cuts), speed * scale, bound * scale**2, jerk * scale**3)
+    varying = np.full(len(cuts) - 1, len(cuts) > 2)
+    return Sections(np.diff(cuts), speed * scale, bound * scale**2, jerk * scale**3, varying)
 
 
 def _derivatives(path: JointPath, k: int, x: Array) -> tuple[Array, Array]:
