@@ -56,7 +56,9 @@ class CurvedPath:
         ends = np.append(s[::_SAMPLES], self.length)
         rate, bend = self.turns.rates(s)
         across = self.curve.along(u)[1]
-        return Shape(np.diff(ends), *(_largest(values, sections) for values in (across, rate, bend)))
+        curvature, turn_rate, turn_bend = (_largest(values, sections) for values in (across, rate, bend))
+        varying = np.ones(sections, dtype=np.bool_)
+        return Shape(np.diff(ends), curvature, turn_rate, turn_bend, varying)
 
     @property
     def turn_rate(self) -> float:

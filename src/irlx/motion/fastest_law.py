@@ -15,7 +15,9 @@ def fastest_trapezoids(sections: Sections, length: float) -> PhasedLaw:
     """Ramps and cruises of constant acceleration: no law within the bounds is faster.
 
     The squares of the rates where sections meet are cut to what can be reached from the start, then to what
-    can be braked down to the end; within a section the rate rises, cruises and falls.
+    can be braked down to the end; within a section the rate rises, cruises and falls. Where the bounds of
+    sections stand for ones that change steadily, it only goes from one border to the other: a rate that fell
+    at each border as late as it may would make the acceleration flicker.
     """
     lengths, speed, acc = sections.lengths.tolist(), sections.speed.tolist(), sections.acc.tolist()
     square = [0.0, *(min(a, b) ** 2 for a, b in pairwise(speed)), 0.0]
@@ -24,8 +26,13 @@ def fastest_trapezoids(sections: Sections, length: float) -> PhasedLaw:
     for i in range(len(lengths) - 1, -1, -1):
         square[i] = min(square[i], square[i + 1] + 2.0 * acc[i] * lengths[i])
     phases = Phases()
+    steadily = sections.steadily
     for i, (way, fastest, bound) in enumerate(zip(lengths, speed, acc, strict=True)):
         first, last = square[i], square[i + 1]
+        if steadily[i] and max(first, last) > 0.0:
+            rates = (sqrt(first), sqrt(last))
+            phases.add(2.0 * way / (rates[0] + rates[1]), way, rates[1], bound, (last - first) / (2.0 * way))
+            continue
         top = max(min(fastest * fastest, 0.5 * (first + last) + bound * way), first, last)
         up, down = min((top - first) / (2.0 * bound), way), min((top - last) / (2.0 * bound), way)
         peak, rates = sqrt(top), (sqrt(first), sqrt(last))

@@ -208,7 +208,8 @@ def _shape_of(edge: Edge, first: float, last: float) -> Shape:
     ends = np.clip(np.concatenate([[0.0], np.cumsum(shape.lengths)]), first, last)
     lengths = np.diff(ends) if isinstance(edge.path, CurvedPath) else np.array([last - first])
     kept = np.flatnonzero(lengths > 0.0)
-    return Shape(lengths[kept], shape.curvature[kept], shape.turn_rate[kept], shape.turn_bend[kept])
+    varying = np.full(len(kept), isinstance(edge.path, CurvedPath))
+    return Shape(lengths[kept], shape.curvature[kept], shape.turn_rate[kept], shape.turn_bend[kept], varying)
 
 
 def _with_part_of_time(

@@ -69,14 +69,18 @@ class PlannedJointCurve:
     law: TimeLaw
     ticks: int
 
-    def postures(self, dt: float) -> Array:
-        """Joint values of ticks 1 .. ticks, shape (ticks, n), the last one exactly the end."""
-        s, _ = self.law.evaluate(dt * np.arange(1.0, self.ticks + 1.0))
+    def postures(self, dt: float, rows: int | None = None) -> Array:
+        """Joint values of ticks 1 .. ticks, shape (ticks, n), the last one exactly the end.
+
+        With `rows` fewer of them (rows, n), spread evenly over the ticks.
+        """
+        count = self.ticks if rows is None else rows
+        s, _ = self.law.evaluate(self.ticks / count * dt * np.arange(1.0, count + 1.0))
         s[-1:] = self.path.length
-        rows = self.path.q(s)
+        q = self.path.q(s)
         still = np.all(self.path.postures == self.path.end, axis=0)
-        rows[:, still] = self.path.end[still]
-        return rows
+        q[:, still] = self.path.end[still]
+        return q
 
 
 @dataclass(frozen=True)
@@ -244,7 +248,8 @@ def _bounds(path: JointPath, k: int, cuts: Array, law: MotionLaw, limits: JointL
         bound = np.min(np.where(steep > 0.0, left / steep, np.inf), axis=1)
     scale = law.override
     jerk = bound / RISE_TIME
-    return Sections(np.diff(cuts), speed * scale, bound * scale**2, jerk * scale**3)
+    varying = np.full(len(cuts) - 1, len(cuts) > 2)
+    return Sections(np.diff(cuts), speed * scale, bound * scale**2, jerk * scale**3, varying)
 
 
 def _derivatives(path: JointPath, k: int, x: Array) -> tuple[Array, Array]:

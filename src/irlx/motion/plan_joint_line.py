@@ -44,7 +44,7 @@ class PlannedJointLine:
         With `rows` fewer of them (rows, n), spread evenly over the ticks.
         """
         rows = self.ticks if rows is None else rows
-        share, _ = self.law.evaluate(self.ticks / rows * dt * np.arange(1.0, rows + 1.0))
+        share, _ = self.law.evaluate(self.ticks / max(rows, 1) * dt * np.arange(1.0, rows + 1.0))
         share[-1:] = 1.0
         q = self.start + share[:, None] * (self.end - self.start)
         q[-1:] = self.end

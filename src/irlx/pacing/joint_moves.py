@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.blocks import JointIncrement, JointTarget, MoveBlock
-from irlx.diagnostics import Place, report
-from irlx.motion.plan_joint_line import plan_joint_line
+from irlx.diagnostics import IrlxError, Place, report
+from irlx.motion.plan_chain import lost_blend
+from irlx.motion.plan_joint_chain import JointLeg, PlannedJointChain, plan_joint_chain
 from irlx.pacing.clock import programmed_clock
 from irlx.pacing.conditions import check_conditions
 from irlx.pacing.errors import PacingError
@@ -21,7 +22,7 @@ from irlx.pacing.posed import pose_target, posture_target
 from irlx.pacing.posture_left import JOINTS_GIVEN, ON_THE_WAY, posture_left
 from irlx.pacing.postures import asked_posture, posture_of_pose
 from irlx.pacing.row_check import broken_bound
-from irlx.pacing.rows import MotionRows, held
+from irlx.pacing.rows import MotionRows, handed_out, held
 from irlx.pacing.situation import Situation
 from irlx.pacing.snap import SAME_VALUE
 from irlx.pacing.switches import check_joint_target
@@ -31,35 +32,77 @@ Array = NDArray[np.float64]
 
 
 def move_joints(situation: Situation, moves: Sequence[MoveBlock], in_force: LimitsInForce) -> Motion:
-    """Carry out the first of several PTPs. Raises PacingError or MotionError at its place."""
-    block = moves[0]
-    return Motion((_moved(situation, block, in_force, situation.locate(block.origin)),), in_force)
+    """Carry out the first stop-to-stop motion of several PTPs, those first that pass their targets.
+
+    Where the joined moves cannot be done, the first one is done alone. Raises PacingError or MotionError at
+    its place.
+    """
+    first = _leg(situation, moves[0], in_force)
+    legs = [first, *_further(situation, first, moves[1:], in_force)]
+    plan = plan_joint_chain(legs, situation.q, in_force.limits, situation.robot.joint_names, situation.dt)
+    if plan.legs > 1:
+        try:
+            return _motion(situation, moves, plan, in_force)
+        except PacingError:
+            why = "joined to the next one it cannot be done"
+            situation.notes.add(lost_blend(legs[0].place, why, legs[1].place))
+            names = situation.robot.joint_names
+            plan = plan_joint_chain(legs[:1], situation.q, in_force.limits, names, situation.dt)
+    return _motion(situation, moves, plan, in_force)
 
 
-def _moved(
-    situation: Situation, block: MoveBlock, in_force: LimitsInForce, place: Place
-) -> MotionRows | None:
+def _further(
+    situation: Situation, first: JointLeg, moves: Sequence[MoveBlock], in_force: LimitsInForce
+) -> list[JointLeg]:
+    """The legs behind the first one, as far as they can be told before it is done."""
+    legs, before = [], first
+    for move in moves:
+        # What is to be said of a move is said when it is its turn.
+        there = replace(situation, q=before.end, warnings=[])
+        try:
+            before = _leg(there, move, in_force)
+        except IrlxError:
+            break
+        legs.append(before)
+    return legs
+
+
+def _leg(situation: Situation, block: MoveBlock, in_force: LimitsInForce) -> JointLeg:
+    """A PTP as a motion to a posture. Raises PacingError where the joints may not go there."""
+    place = situation.locate(block.origin)
     end = _end_posture(situation, block, in_force, place)
     # Degrees in a program come back as radians that may be off by the last bits: nothing moves for that.
     end = np.where(np.abs(end - situation.q) <= SAME_VALUE, situation.q, end)
-    robot, dt = situation.robot, situation.dt
+    robot = situation.robot
     frozen = [number for number in situation.options.frozen if end[number - 1] != situation.q[number - 1]]
     if frozen:
         raise PacingError(report("IRL343", place, joint=robot.axes[frozen[0] - 1].name))
     check_joint_target(end, robot, in_force.limits, place)
-    plan = plan_joint_line(situation.q, end, block.law, in_force.limits, robot.joint_names, dt, place)
     if block.reconfiguration is not None:
         why = JOINTS_GIVEN if isinstance(block.target, JointTarget | JointIncrement) else ON_THE_WAY
         left = np.array(block.reconfiguration.values) - end
         situation.warnings.extend(posture_left(left, why, robot, place))
-    if plan.ticks == 0:
-        return None
-    rows = situation.setup.resolution.rows_of(plan.ticks)
-    q = plan.postures(dt, rows)
-    _check_rows(situation, q, in_force.limits, dt * plan.ticks / rows, place)
+    return JointLeg(end, block.law, block.blend, place)
+
+
+def _motion(
+    situation: Situation, moves: Sequence[MoveBlock], plan: PlannedJointChain, in_force: LimitsInForce
+) -> Motion:
+    for note in plan.notes:
+        situation.notes.add(note)
+    motion, dt, place = plan.motion, situation.dt, situation.locate(moves[0].origin)
+    if motion.ticks == 0:
+        return Motion((None,), in_force)
+    count = situation.setup.resolution.rows_of(motion.ticks)
+    q = motion.postures(dt, count)
+    _check_rows(situation, q, in_force.limits, dt * motion.ticks / count, place)
     check_conditions(q, situation.kinematics, place)
-    s = programmed_clock(plan.law, plan.ticks, dt, rows).s
-    return replace(_rows(situation, block, q, s), span=plan.ticks + 1)
+    s = programmed_clock(motion.law, motion.ticks, dt, count).s
+    rows = replace(_rows(situation, moves[0], q, s), span=motion.ticks + 1)
+    handed: list[MotionRows | None] = [rows]
+    if plan.legs > 1:
+        handed = handed_out(rows, moves[: plan.legs], plan.ends)
+    return Motion(tuple(handed), in_force)
 
 
 def _rows(situation: Situation, block: MoveBlock, q: Array, s: Array) -> MotionRows:

@@ -92,38 +92,20 @@ def handed_out(
     `ends` are the path parameters of these places, the last one that of the stop, which all rows left go to.
     None for a move so short that no row falls to it.
     """
-    path = rows.path
-    if path is None:
-        raise TypeError("only moves along a path are joined")
-    s = np.array([demand.s for demand in path.demands])
+    s = rows.s[:-1]
     cuts = [int(np.argmin(np.abs(s - end))) + 1 for end in ends[:-1]]
     lasts = np.maximum.accumulate([0, *cuts, len(rows)]).tolist()
     begins = [0.0, *ends]
     return [
-        _part(rows, path, block, (first, last), (begins[k], begins[k + 1])) if last > first else None
+        _part(rows, block, (first, last), (begins[k], begins[k + 1])) if last > first else None
         for k, (block, (first, last)) in enumerate(zip(blocks, pairwise(lasts), strict=True))
     ]
 
 
-def _part(
-    rows: MotionRows, path: PathPart, block: MoveBlock, span: tuple[int, int], way: tuple[float, float]
-) -> MotionRows:
+def _part(rows: MotionRows, block: MoveBlock, span: tuple[int, int], way: tuple[float, float]) -> MotionRows:
     first, last = span
     part = slice(first, last)
-    begin, end = _first_tick(rows, path, first), _first_tick(rows, path, last)
-    # A stretch may reach into the moves beside it: it is told once, where it costs most.
-    slowings = tuple(
-        replace(found, first_row=found.first_row - first, last_row=found.last_row - first)
-        for found in path.slowings
-        if way[0] <= found.s < way[1]
-    )
-    own = replace(
-        path,
-        demands=path.demands[part],
-        slowings=slowings,
-        begin=way[0],
-        s_before=path.demands[first - 1].s if first > 0 else 0.0,
-    )
+    begin, end = _first_tick(rows, first), _first_tick(rows, last)
     return replace(
         rows,
         block=block,
@@ -131,17 +113,34 @@ def _part(
         span=end - begin,
         **{name: getattr(rows, name)[part] for name in _BY_ROW},
         length=way[1] - way[0],
-        path=own,
+        path=None if rows.path is None else _part_of_path(rows.path, span, way),
         stops=last == len(rows),
         iterations=rows.iterations if first == 0 else 0,
     )
 
 
-def _first_tick(rows: MotionRows, path: PathPart, row: int) -> int:
-    """The first tick that a row stands for."""
-    if row == 0:
-        return rows.first_tick
-    return path.demands[row - 1].tick + 1 if row <= len(path.demands) else rows.first_tick + rows.ticks
+def _part_of_path(path: PathPart, span: tuple[int, int], way: tuple[float, float]) -> PathPart:
+    first, last = span
+    # A stretch may reach into the moves beside it: it is told once, where it costs most.
+    slowings = tuple(
+        replace(found, first_row=found.first_row - first, last_row=found.last_row - first)
+        for found in path.slowings
+        if way[0] <= found.s < way[1]
+    )
+    return replace(
+        path,
+        demands=path.demands[first:last],
+        slowings=slowings,
+        begin=way[0],
+        s_before=path.demands[first - 1].s if first > 0 else 0.0,
+    )
+
+
+def _first_tick(rows: MotionRows, row: int) -> int:
+    """The first tick that a row stands for; the last row, a hold, stands for one."""
+    if row == len(rows):
+        return rows.first_tick + rows.ticks
+    return rows.first_tick + round(row * (rows.ticks - 1) / (len(rows) - 1))
 
 
 _BY_ROW = (

@@ -226,7 +226,8 @@ class ChainWay:
         apart = np.linalg.norm(positions - following.points(there), axis=1)
         furthest = np.maximum.accumulate(np.concatenate([[hint], way]))[1:]
         back = (furthest - way > PATH_STEP) & (apart <= off + PATH_STEP)
-        return np.asarray((apart < off) | back)
+        # Legs may lie on each other: rounding must not tell which is nearer.
+        return np.asarray((apart < off - PATH_STEP) | back)
 
     def _place(
         self, placed: Placed, start: int, part: _Part, at: Floats, off: Floats, rotations: Floats

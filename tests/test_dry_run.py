@@ -1,0 +1,113 @@
+"""`irlx check --motion` says what a run would: the same errors at the same places, and what will be slow."""
+
+from __future__ import annotations
+
+import json
+import time
+from pathlib import Path
+
+import pytest
+
+import irlx
+from drawn_programs import write_program
+from irlx.cli.main import main
+from irlx.dry_run import dry_run
+from irlx.job import prepare
+from irlx.pipeline import Execution
+
+SEEDS, LONG = range(200, 215), range(2000, 2300)
+SLOW = """PROGRAM slow;
+VAR POSITION: p := (441, 100, 324), home := (441, 200, 324); POSE: q;
+BEGIN
+  q := R_ROBTARGET_ACT.PSE;
+  MOVE LIN home;
+  MOVE LIN p SPEED := 1500, ACC := 9000;
+  MOVE LIN home SPEED := 50;
+  OUT_1 := TRUE;
+  MOVE LIN POSITION(3000, 0, 0);
+  MOVE LIN q;
+  MOVE LIN POSITION(0, 0, 5000);
+ENDPROGRAM;
+"""
+CELL = '[robot]\nmodel = "arm7"\n[signals.outputs]\n'
+
+
+def motion_codes(found: list[irlx.Diagnostic]) -> list[tuple[int, str]]:
+    return [(one.place.line, one.code) for one in found if one.place is not None and one.is_error]
+
+
+@pytest.fixture
+def slow(tmp_path: Path) -> Path:
+    (tmp_path / "slow.toml").write_text('[robot]\nmodel = "arm7"\n')
+    (tmp_path / "slow.irl").write_text(SLOW)
+    return tmp_path / "slow.irl"
+
+
+def test_all_that_is_wrong_is_told_in_one_pass(slow) -> None:
+    found = irlx.check(slow, motion=True)
+    codes = [(one.place.line, one.code) for one in found if one.place is not None]
+    assert (6, "IRL445") in codes
+    assert [place for place in codes if place[1].startswith("IRL52")] == [(9, "IRL520"), (11, "IRL520")]
+    assert all(line not in (7, 10) for line, _ in codes)
+
+
+def test_it_is_off_unless_asked_for(slow) -> None:
+    assert [one.code for one in irlx.check(slow)] == ["IRL205"]
+
+
+def test_the_command_line_finds_the_same(slow, capsys) -> None:
+    assert main(["check", str(slow), "--motion", "--format", "json"]) == 1
+    told = json.loads(capsys.readouterr().out)
+    assert [(one["line"], one["code"]) for one in told] == [
+        (one.place.line, one.code) for one in irlx.check(slow, motion=True) if one.place is not None
+    ]
+
+
+def test_it_writes_nothing(tmp_path) -> None:
+    (tmp_path / "w.toml").write_text('[robot]\nmodel = "arm7"\n')
+    body = "OPEN(log, 'a.txt', 'WRITE');\nWRITE(log, 'x');\nCLOSE(log);"
+    (tmp_path / "w.irl").write_text(f"PROGRAM w;\nVAR FILE: log;\nBEGIN\n{body}\nENDPROGRAM;\n")
+    assert irlx.check(tmp_path / "w.irl", motion=True) == []
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["w.irl", "w.toml"]
+
+
+def agree(folder: Path, seed: int) -> None:
+    """The first error of a run is the dry run's first one, at the same line; without one there is none."""
+    write_program(folder, seed)
+    in_check = motion_codes(irlx.check(folder / "drawn.irl", motion=True))
+    try:
+        irlx.run(folder / "drawn.irl")
+        in_run: list[tuple[int, str]] = []
+    except irlx.RunError as error:
+        in_run = motion_codes([error.reason])
+    assert sorted(in_check)[:1] == in_run
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_drawn_programs_have_the_errors_of_their_runs(tmp_path, seed) -> None:
+    agree(tmp_path, seed)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", LONG)
+def test_many_drawn_programs_have_the_errors_of_their_runs(tmp_path, seed) -> None:
+    agree(tmp_path, seed)
+
+
+def test_it_takes_a_fifth_of_the_time_of_the_motion(tmp_path) -> None:
+    """At a tick of 1 ms; what is slowed costs a plan in both."""
+    (tmp_path / "long.toml").write_text('[robot]\nmodel = "arm7"\n[motion]\ntick_ms = 1\n')
+    moves = "MOVE LIN (441, 100, 324); MOVE LIN (541, 100, 424); MOVE LIN (441, 200, 324);" * 4
+    (tmp_path / "long.irl").write_text(
+        f"PROGRAM long;\nBEGIN\nMOVE LIN (441, 200, 324);\n{moves}\nENDPROGRAM;\n"
+    )
+    job = prepare(tmp_path / "long.irl")
+    seconds = []
+    for carry_out in (lambda: list(Execution(job)), lambda: dry_run(job)):
+        taken = []
+        for _ in range(4):
+            begin = time.process_time()
+            carry_out()
+            taken.append(time.process_time() - begin)
+        seconds.append(min(taken))
+    assert seconds[1] * 5.0 < seconds[0], seconds
