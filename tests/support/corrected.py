@@ -1,7 +1,7 @@
 """What a corrected stream must keep, judged from its samples: limits in force, poses, programmed rows.
 
-Poses come from the verifier's own forward kinematics, limits from differences of neighbouring rows; the programmed
-rows are those of the same program planned with the share of the limits that corrections leave.
+Poses come from the verifier's own forward kinematics, limits from differences of neighbouring rows; the
+programmed rows are those of the same program planned with the share of the limits that corrections leave.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ Tools = dict[int, tuple[np.ndarray, Rotation]]
 
 @dataclass
 class Corrected:
-    """Samples of a corrected stream (rows of q, tool, correction, block), its report, programmed rows by sample."""
+    """A corrected stream: arrays of its samples, its report, and the programmed row of each sample."""
 
     q: np.ndarray
     tool: np.ndarray
@@ -53,7 +53,7 @@ def files(folder: Path, body: str, cell: str, declared: str = "") -> Path:
 
 
 def corrected(path: Path, sensor: Callable, tools: Tools | None = None, **given) -> Corrected:
-    """A stream corrected by `sensor`, every row of it judged; `tools` by block where the program changes them."""
+    """A stream corrected by `sensor`, every row judged; `tools` where the program has others than the tip."""
     stream = irlx.stream(path, correct=sensor, **given)
     samples = list(stream)
     found = Corrected(

@@ -5,6 +5,8 @@ dx, dy, dz in m say where it is, rx, ry, rz in rad how it is turned, as a rotati
 
 from __future__ import annotations
 
+from math import hypot
+
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
@@ -34,4 +36,4 @@ def twist_of_rate(correction: Array) -> Array:
 
 def parts(correction: Array) -> tuple[float, float]:
     """Length of the displacement, m, and of the rotation vector, rad."""
-    return float(np.linalg.norm(correction[:3])), float(np.linalg.norm(correction[3:]))
+    return hypot(*correction[:3].tolist()), hypot(*correction[3:].tolist())
