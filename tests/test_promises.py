@@ -42,14 +42,15 @@ def test_every_tolerance_is_told_with_its_check():
 
 
 def test_no_check_has_a_tolerance_of_its_own():
-    """The verifier's modules name no small number but those that tell cases apart, which are listed here."""
-    told_apart = {"arcs.py": 3, "paths.py": 3}
+    """The verifier's modules name no small number but those that tell cases apart, or end an iteration."""
+    told_apart = {"arcs.py": 3, "paths.py": 3, "chain_legs.py": 1, "blends.py": 1}
+    ends_of_iterations = {"bernstein.py": 1, "corners.py": 3, "splines.py": 1}
     found = {}
     for path in sorted((ROOT / "src" / "irlx" / "verifier").rglob("*.py")):
         numbers = NUMBER.findall(re.sub(r'"""(?:.|\n)*?"""', "", path.read_text(encoding="utf-8")))
         if numbers:
             found[path.name] = len(numbers)
-    assert found == told_apart
+    assert found == told_apart | ends_of_iterations
 
 
 @pytest.mark.parametrize("largest", [0.0, 1e-300, 1.0, np.pi, 4.0, 1e6])

@@ -73,7 +73,9 @@ class Turn:
 
     @cached_property
     def vector(self) -> Array:
-        """Axis times angle in the tool frame at the start, (3,) rad."""
+        """Axis times angle in the tool frame at the start, (3,) rad; of the same orientation exactly 0."""
+        if np.array_equal(self.start, self.end):
+            return np.zeros(3)
         return np.asarray(Rotation.from_matrix(self.start.T @ self.end).as_rotvec())
 
     @cached_property

@@ -40,12 +40,21 @@ class TurnCurve:
     @classmethod
     def through(cls, breaks: Array, bases: Array, jets: list[tuple[TurnJet, TurnJet]]) -> TurnCurve:
         """Curve whose pieces have the given jets at their ends; a piece turns less than pi from its base."""
+        if all(_rests(base, jet) for base, pair in zip(bases, jets, strict=True) for jet in pair):
+            return cls(breaks, bases, np.zeros((6, len(bases), 3)))
         start, end = (_vector_jets(bases, [jet[side] for jet in jets]) for side in (0, 1))
         return cls(breaks, bases, quintic(start, end, np.diff(breaks)[:, None]))
+
+    @cached_property
+    def rests(self) -> bool:
+        """Whether nothing turns: most blends lie between moves that keep the orientation."""
+        return not self.coefficients.any()
 
     @property
     def widest(self) -> float:
         """Angle of the largest turn from the start of a piece to its end, rad."""
+        if self.rests:
+            return 0.0
         ends = np.array([self._curve(last) for last in np.nextafter(self.breaks[1:], -np.inf)])
         starts = self.coefficients[-1]
         turned = Rotation.from_rotvec(starts).inv() * Rotation.from_rotvec(ends)
@@ -53,11 +62,15 @@ class TurnCurve:
 
     def rotations(self, s: Array) -> Array:
         """Orientations (N, 3, 3) at s (N,)."""
+        if self.rests:
+            return np.asarray(self.bases[self._piece(s)])
         vectors = Rotation.from_rotvec(self._curve(s)).as_matrix()
         return np.asarray(self.bases[self._piece(s)] @ vectors)
 
     def rates(self, s: Array) -> tuple[Array, Array]:
         """Angular rate by s, a rotation vector in the world frame, and its derivative by s, each (N, 3)."""
+        if self.rests:
+            return np.zeros((len(s), 3)), np.zeros((len(s), 3))
         rate, bend = angular_rates(self._curve(s), self._slope(s), self._bend(s))
         bases = self.bases[self._piece(s)]
         return (bases @ rate[:, :, None])[:, :, 0], (bases @ bend[:, :, None])[:, :, 0]
@@ -76,6 +89,10 @@ class TurnCurve:
     @cached_property
     def _bend(self) -> PPoly:
         return self._curve.derivative(2)
+
+
+def _rests(base: Array, jet: TurnJet) -> bool:
+    return not (jet.rate.any() or jet.bend.any()) and np.array_equal(base, jet.rotation)
 
 
 def _vector_jets(bases: Array, jets: list[TurnJet]) -> Jet:
