@@ -125,7 +125,7 @@ def test_every_row_keeps_limits_and_pose(run, name, sensor):
     found = run(name, SENSORS.get(sensor) or white())
     assert found.report.ticks + found.report.held_ticks == len(found.q) - 1
     if sensor == "there and back":
-        assert np.max(np.abs(found.offset[-1])) < 1e-12
+        assert not np.any(found.offset[-1])
         assert not np.any(found.correction[-1])
 
 
@@ -200,6 +200,39 @@ def test_frozen_joints_stand_whatever_the_sensor_says(run):
     frozen = found.q[np.isin(found.block, [3, 4, 5]), 2]
     assert len(frozen) > 20
     assert np.all(np.isin(frozen[1:] - frozen[0], [0.0]))
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        "FREEZESTART 3;\nMOVE LIN store;\nWAIT 1 SEC;\nFREEZEEND;",
+        "R_WEIGHTS := (9., 1., 9., 1., 1., 9., 1.);",
+    ],
+)
+def test_another_nearest_posture_is_gone_to_without_ringing(tmp_path, change):
+    body = f"MOVE LIN next;\nWAIT 1 SEC;\n{change}\nWAIT 1 SEC;"
+    path = files(tmp_path, body, ARM.format(tick=10), DECLARED)
+    found = corrected(path, constant(0, 0.04, -0.04, 0, 0, 0))
+    freed = found.offset[found.block == found.block[-1]]
+    assert abs(freed[-1, 2] - freed[0, 2]) > 1e-3
+    moved = np.diff(freed[:, 2])
+    moved = moved[np.abs(moved) > 1e-12]
+    assert np.all(np.sign(moved) == np.sign(moved[0]))
+    assert not np.any(np.diff(freed[-10:], axis=0))
+
+
+def test_another_tool_begins_with_the_correction_that_the_posture_gives_it(tmp_path):
+    body = (
+        "MOVE LIN store;\nWAIT 0.5 SEC;\nR_TOOL := POSE(POSITION(0, 0, 120), ORIXYZ(0, 20, 0));\n"
+        "WAIT 0.1 SEC;\nMOVE LIN next;"
+    )
+    path = files(tmp_path, body, ARM.format(tick=10), DECLARED)
+    found = corrected(path, constant(0.001, 0, 0, 0, 0, 0), {4: FLANGE, 5: FLANGE})
+    first = int(np.argmax(found.block == 4))
+    np.testing.assert_array_equal(found.correction[first - 1], [0.001, 0, 0, 0, 0, 0])
+    seen_from_the_new = FLANGE[1].inv().apply([0.001, 0, 0])
+    np.testing.assert_allclose(found.correction[first, :3], seen_from_the_new, rtol=0, atol=1e-4)
+    assert found.report.refused_ticks == 0
 
 
 def test_a_correction_into_a_position_limit_stops_there(run):
@@ -312,3 +345,15 @@ def test_a_stream_can_be_closed_and_goes_no_further(tmp_path):
     stream.close()
     assert list(stream) == []
     assert asked == [0, 1, 2]
+
+
+def test_the_example_of_the_reference(monkeypatch, capsys):
+    root = Path(__file__).parents[2]
+    text = (root / "docs" / "reference" / "interface.md").read_text(encoding="utf-8")
+    code = text.split("### Corrections", 1)[1].split("```python\n", 1)[1].split("```", 1)[0]
+    monkeypatch.chdir(root)
+    found: dict = {}
+    exec(code, found)
+    assert capsys.readouterr().out.split()[0] == str(found["report"].ticks)
+    assert found["report"].requests == found["report"].ticks > 200
+    assert abs(found["sample"].correction[1] - found["seam"](found["sample"])[1]) < 1e-3

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from irlx.robot.limits import JointLimits
 
 CORRECTION_SHARE = 0.25
@@ -26,9 +24,3 @@ def planned_limits(limits: JointLimits, share: float) -> JointLimits:
 def correction_limits(planned: JointLimits) -> JointLimits:
     """Limits of corrections beside motions that were planned with `planned`, 1 - CORRECTION_SHARE of all."""
     return planned_limits(planned, CORRECTION_SHARE / (1.0 - CORRECTION_SHARE))
-
-
-def unlimited_positions(limits: JointLimits) -> JointLimits:
-    """The same limits without those of position."""
-    nothing = JointLimits.unlimited(limits.position_lower.size)
-    return replace(limits, position_lower=nothing.position_lower, position_upper=nothing.position_upper)
