@@ -335,12 +335,15 @@ def stream(
     displacement (m) and the rotation vector (rad) from the programmed pose in its own frame, or None for no
     change. Motions are then planned with three quarters of the joints' speed and acceleration limits, and
     corrections follow within the rest; `SampleStream.corrections` reports what was delayed. Raises IrlxError
-    with IRL583 for a cell with constraints; at a sample IRL580, IRL581, IRL582 for an answer that is none.
+    with IRL583 for a cell with constraints, IRL006 for what is no function; at a sample IRL580, IRL581,
+    IRL582 for an answer that is none, IRL584 for a correction for which new limits leave no room.
     """
     channels = files, input, output
     job = prepare(program, cell, tick_ms, max_slow, max_steps, inputs, *channels, pause_s, on_pause)
     if correct is None:
         return SampleStream(_samples(job))
+    if not callable(correct):
+        raise IrlxError(report("IRL006", option="correct=", value=repr(correct), cause="a function"))
     execution = Execution(job, planned_share=1.0 - CORRECTION_SHARE)
     if execution.kinematics.constraints:
         names = ", ".join(one.name for one in execution.kinematics.constraints)

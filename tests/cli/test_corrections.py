@@ -289,6 +289,12 @@ def test_what_the_sensor_raises_comes_out_unchanged(tmp_path):
     assert stream.corrections.ticks == 5
 
 
+def test_what_is_no_function_is_no_sensor(tmp_path):
+    path = files(tmp_path, MOVES, ARM.format(tick=10), DECLARED)
+    with pytest.raises(irlx.IrlxError, match=r"IRL006.*correct=.*\[0, 0, 0, 0, 0, 0\]"):
+        irlx.stream(path, correct=[0, 0, 0, 0, 0, 0])
+
+
 @pytest.mark.parametrize(
     ("answer", "code", "found"),
     [
