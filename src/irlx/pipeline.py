@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import closing
 from dataclasses import replace
+from math import radians
 from pathlib import PurePath
 from typing import IO
 
@@ -19,6 +20,10 @@ from irlx.interpreter.channels.channels import Channels, Told
 from irlx.interpreter.channels.pieces import InputGiven
 from irlx.interpreter.interpret import Interpretation
 from irlx.job import InputsGiven, Job, PathLike, header_of, kinematics_of, prepare
+from irlx.pacing.correction.corrector import CorrectedRow, Corrector
+from irlx.pacing.correction.share import CORRECTION_SHARE
+from irlx.pacing.correction.tally import Tally
+from irlx.pacing.correction.tool_rates import ToolRates
 from irlx.pacing.executed import Executed
 from irlx.pacing.explanation import TickExplanation
 from irlx.pacing.explanation import explain_tick as explain_row
@@ -33,10 +38,15 @@ from irlx.report.recording import Recording
 from irlx.report.run import Run, RunError, RunInterrupted
 from irlx.streams.atomic import AtomicFile
 from irlx.streams.sample import Sample
+from irlx.streams.sample_stream import SampleStream
+from irlx.streams.sampler import Sampler
 
 Array = NDArray[np.float64]
 Progress = Callable[[Block, float], None]
 """Called after each block with the block and the simulated time so far, s."""
+
+Sensor = Callable[[Sample], Sequence[float] | Array | None]
+"""Called with the last sample; gives the correction that the tool is to have, None to leave it."""
 
 
 class Execution:
@@ -45,7 +55,7 @@ class Execution:
     `channels` are what it reads and writes; `left_open` warns of files that were open at its end.
     """
 
-    def __init__(self, job: Job, resolution: Resolution = EVERY_TICK) -> None:
+    def __init__(self, job: Job, resolution: Resolution = EVERY_TICK, planned_share: float = 1.0) -> None:
         self.job = job
         cell = job.cell
         dt = job.tick_ns / 1e9
@@ -58,6 +68,7 @@ class Execution:
             max_slow=job.max_slow,
             inputs=job.inputs,
             resolution=resolution,
+            planned_share=planned_share,
         )
         self.kinematics = setup.kinematics
         self._pacer = Pacer(setup, self._locate)
@@ -113,6 +124,14 @@ class Execution:
     def _all(self, groups: Sequence[tuple[Block, ...]]) -> Iterator[Executed]:
         for group in groups:
             yield from self._pacer.carry_out(group)
+
+    def corrected(self, ask: Callable[[], object], tally: Tally) -> Iterator[CorrectedRow]:
+        """Rows of the program, each corrected by what `ask` says to the one before; see `planned_share`."""
+        motion = self.job.cell.motion
+        rates = ToolRates(
+            motion.speed / 1e3, motion.acc / 1e3, radians(motion.speed_ori), radians(motion.acc_ori)
+        )
+        return Corrector(self._pacer, rates, ask, tally).rows(self)
 
     def blocks(self, told: Told | None = None) -> Iterator[Block]:
         """Blocks of the program; nothing moves until it asks for the posture that its moves lead to.
@@ -303,23 +322,45 @@ def stream(
     output: IO[str] | None = None,
     pause_s: float = 0.0,
     on_pause: PauseFunction | None = None,
-) -> Iterator[Sample]:
+    correct: Sensor | None = None,
+) -> SampleStream:
     """Samples of a run, one after another, motion by motion as they are asked for.
 
     The same samples as `run` gives. Iteration may stop at any sample. At each PAUSE, all samples before it
     handed out, `on_pause` is called with its place; the program goes on when it returns, after the time, s,
     that it returns, or `pause_s` for None; what it raises comes out here. What cannot be prepared raises
     here, what goes wrong in motion at the sample it keeps from coming, as IrlxError.
+
+    `correct` is asked after each sample for the correction of the tool in the next one: six numbers, the
+    displacement (m) and the rotation vector (rad) from the programmed pose in its own frame, or None for no
+    change. Motions are then planned with three quarters of the joints' speed and acceleration limits, and
+    corrections follow within the rest; `SampleStream.corrections` reports what was delayed. Raises IrlxError
+    with IRL583 for a cell with constraints; at a sample IRL580, IRL581, IRL582 for an answer that is none.
     """
     channels = files, input, output
     job = prepare(program, cell, tick_ms, max_slow, max_steps, inputs, *channels, pause_s, on_pause)
-    return _samples(job)
+    if correct is None:
+        return SampleStream(_samples(job))
+    execution = Execution(job, planned_share=1.0 - CORRECTION_SHARE)
+    if execution.kinematics.constraints:
+        names = ", ".join(one.name for one in execution.kinematics.constraints)
+        raise IrlxError(report("IRL583", names=names))
+    tally = Tally(job.cell.robot.joint_names)
+    return SampleStream(_corrected(execution, correct, tally), lambda: tally.report)
 
 
-def _samples(job: Job) -> Iterator[Sample]:
+def _samples(job: Job) -> Generator[Sample, None, None]:
     execution = Execution(job)
     recording = execution.recording()
     yield from recording.take_samples()
     for executed in execution:
         recording.add(executed)
         yield from recording.take_samples()
+
+
+def _corrected(execution: Execution, sensor: Sensor, tally: Tally) -> Generator[Sample, None, None]:
+    job = execution.job
+    sampler, start = Sampler(job.tick_ns), job.cell.start
+    yield sampler.sample(start, *execution.kinematics.tool_pose(start), 0, np.zeros(6))
+    for row in execution.corrected(lambda: sensor(sampler.last), tally):
+        yield sampler.sample(row.q, row.rotation, row.position, row.block.id, row.correction)

@@ -22,6 +22,8 @@ IN_WORDS = {"IRL090", "IRL229", "IRL241", "IRL264", "IRL265", "IRL513", "IRL523"
     "IRL553",
 }
 """Codes that no small program for the packaged robot brings about: their pages say so in words."""
+IN_PYTHON = {"IRL580", "IRL581", "IRL582", "IRL583", "IRL584"}
+"""Codes of what is given in Python: their pages show that."""
 
 PLAIN_PROGRAM = "PROGRAM demo;\nBEGIN\n  MOVE LIN POSITION(11400, 1000, 3500);\nENDPROGRAM\n"
 PLAIN_CELL = """[robot]
@@ -72,7 +74,7 @@ def test_page(code):
     assert len(page.splitlines()) <= 50
     shown = bool(section(code, "Bad") and section(code, "Repaired"))
     assert shown or section(code, "Example")
-    assert shown or "```console" in page or code in IN_WORDS
+    assert shown or "```console" in page or code in IN_WORDS | IN_PYTHON
 
 
 IN_DRY_RUNS = {"IRL445", "IRL446", "IRL447"}
@@ -110,3 +112,15 @@ def test_examples_on_the_command_line(tmp_path, monkeypatch, capsys, code):
     assert main(command.split()[2:]) == 2
     assert capsys.readouterr().err.splitlines()[: len(expected)] == expected
     assert sorted(tmp_path.iterdir()) == before
+
+
+@pytest.mark.req("LANG-70")
+@pytest.mark.parametrize("code", sorted(IN_PYTHON))
+def test_examples_in_python(tmp_path, monkeypatch, code):
+    monkeypatch.chdir(tmp_path)
+    text = section(code, "Example")
+    (tmp_path / "p.irl").write_text(fence(text, "irl") or PLAIN_PROGRAM, encoding="utf-8")
+    (tmp_path / "p.toml").write_text(fence(text, "toml") or PLAIN_CELL, encoding="utf-8")
+    with pytest.raises(irlx.IrlxError) as caught:
+        exec(fence(text, "python"), {"irlx": irlx})
+    assert [found.code for found in caught.value.diagnostics] == [code]

@@ -57,7 +57,7 @@ class Chain:
 
     def run(self) -> list[Executed]:
         pacer = self.shop.pacer
-        ahead = Lookahead(pacer._locate, pacer.notes)
+        ahead = Lookahead(pacer.locate, pacer.notes)
         groups = [group for block in self.blocks for group in ahead.take(block)]
         done = [
             executed
@@ -136,7 +136,7 @@ def test_what_turns_back_stops_with_a_note(kit, shop) -> None:
     assert all(executed.rows is not None and executed.rows.stops for executed in done)
     (note,) = shop.pacer.warnings
     assert note.code == "IRL432"
-    assert [related.place for related in note.related] == [shop.pacer._locate(done[1].block.origin)]
+    assert [related.place for related in note.related] == [shop.pacer.locate(done[1].block.origin)]
 
 
 def test_joined_moves_that_cannot_be_done_are_done_one_by_one(kit, shop) -> None:
@@ -145,7 +145,7 @@ def test_joined_moves_that_cannot_be_done_are_done_one_by_one(kit, shop) -> None
     chain = Chain(shop).lin(by(start, 0.0, 0.1, 0.0)).lin(by(start, 0.0, 0.1, 9.0), blend=None)
     with pytest.raises(Exception, match="out of reach") as caught:
         chain.run()
-    assert caught.value.diagnostics[0].place == shop.pacer._locate(chain.blocks[1].origin)
+    assert caught.value.diagnostics[0].place == shop.pacer.locate(chain.blocks[1].origin)
     np.testing.assert_allclose(kit.position(shop.pacer.q), by(start, 0.0, 0.1, 0.0), atol=1e-12)
     assert [note.code for note in shop.pacer.warnings] == ["IRL432"]
 

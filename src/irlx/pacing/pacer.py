@@ -63,9 +63,9 @@ class Pacer:
     def __init__(self, setup: PacingSetup, locate: Callable[[Origin], Place]) -> None:
         self._setup = setup
         self._robot = setup.kinematics.description
-        self._locate = locate
-        self._qp = ProxQpSolver()
-        self._solver = TickSolver(setup.kinematics, self._qp)
+        self.locate = locate
+        self.qp = ProxQpSolver()
+        self._solver = TickSolver(setup.kinematics, self.qp)
         self.q = setup.start
         self.tick = 0
         self.options = Options()
@@ -81,16 +81,16 @@ class Pacer:
         if isinstance(question, AskPosture):
             return tuple(float(value) for value in self.q)
         if isinstance(question, AskInput | AskInputChange):
-            setup = self._setup
-            return answer_of_inputs(question, setup.inputs, self.tick * setup.dt, setup.dt, self._locate)
+            setup = self.setup
+            return answer_of_inputs(question, setup.inputs, self.tick * setup.dt, setup.dt, self.locate)
         if isinstance(question, AskPose | AskManipulability):
-            return answer_of_posture(question, self._setup.kinematics)
+            return answer_of_posture(question, self.setup.kinematics)
         if isinstance(question, AskLastMove):
             return answer_of_last_move(*self._last_way)
         if isinstance(question, AskJointBounds):
             return answer_of_bounds(self._situation.in_force().limits)
         situation = self._situation
-        target, place = PoseTarget(question.position, question.orientation), self._locate(question.origin)
+        target, place = PoseTarget(question.position, question.orientation), self.locate(question.origin)
         near = np.array(question.near) if isinstance(question, AskNearestPosture) else None
         return tuple(posture_of_pose(target, near, situation, situation.in_force(), place).tolist())
 
@@ -98,13 +98,13 @@ class Pacer:
     def _situation(self) -> Situation:
         """What the next motion finds."""
         return Situation(
-            self._setup,
+            self.setup,
             self.q,
             self.tick,
             self.options,
             self._solver,
-            self._qp,
-            self._locate,
+            self.qp,
+            self.locate,
             self.warnings,
             self.notes,
         )
@@ -152,7 +152,7 @@ class Pacer:
 
         For a dry run alone. Raises PacingError or MotionError where no posture is there; it stays then.
         """
-        situation, place = self._situation, self._locate(move.origin)
+        situation, place = self._situation, self.locate(move.origin)
         end = posture_beyond(situation, move, situation.in_force(move.limits), place)
         self.tick += ticks_beyond(situation, move, place)
         self.q = end
@@ -167,20 +167,20 @@ class Pacer:
             return self._move(motion.rows[0], motion)
         if isinstance(block, ReconfigureBlock):
             return self._reconfigure(block)
-        place = self._locate(block.origin)
+        place = self.locate(block.origin)
         if isinstance(block, WaitBlock | PauseBlock):
             return self._wait(block, place)
         if isinstance(block, LimitSwitchBlock):
-            self.warnings += check_limit(block, self._robot, self._setup.limits, self.q, place)
+            self.warnings += check_limit(block, self._robot, self.setup.limits, self.q, place)
         if isinstance(block, FreezeBlock):
-            check_freeze(block, self._robot, self._setup.kinematics.rows, place)
+            check_freeze(block, self._robot, self.setup.kinematics.rows, place)
         if isinstance(block, CriterionBlock) and block.choice is not None:
             from irlx.pacing.criteria import check_criterion
 
             check_criterion(block.choice, self._robot, place)
         if isinstance(block, ToolBlock | WeightsBlock):
             self._setup = refitted(self._setup, block, place)
-            self._solver = TickSolver(self._setup.kinematics, self._qp)
+            self._solver = TickSolver(self._setup.kinematics, self.qp)
         if isinstance(block, SwitchBlock):
             self.options = self.options.after(block, self.q)
         return None
@@ -189,9 +189,9 @@ class Pacer:
         """The first motion from stop to stop that moves become."""
         block = moves[0]
         for clause in block.limits:
-            place = self._locate(clause.origin)
-            self.warnings += check_limit(clause, self._robot, self._setup.limits, self.q, place)
-        situation, place = self._situation, self._locate(block.origin)
+            place = self.locate(clause.origin)
+            self.warnings += check_limit(clause, self._robot, self.setup.limits, self.q, place)
+        situation, place = self._situation, self.locate(block.origin)
         in_force = situation.in_force(block.limits)
         # A clause may have let a joint out of the switch that holds again now.
         check_inside(self.q, self._robot, in_force.limits, place)
@@ -215,18 +215,18 @@ class Pacer:
         return replace(rows, limits=in_force.limits)
 
     def _wait(self, block: WaitBlock | PauseBlock, place: Place) -> MotionRows | None:
-        setup = self._setup
+        setup = self.setup
         rows = waited(block, self.q, setup.dt, self.tick + 1, setup.kinematics, place, setup.resolution)
         return self._moved(rows, self._situation.in_force())
 
     def _reconfigure(self, block: ReconfigureBlock) -> MotionRows | None:
-        place, situation = self._locate(block.origin), self._situation
+        place, situation = self.locate(block.origin), self._situation
         in_force = situation.in_force()
         check_inside(self.q, self._robot, in_force.limits, place)
         konf = asked_posture(block.target, situation, in_force, place)
-        setup, model = self._setup, situation.model(in_force)
+        setup, model = self.setup, situation.model(in_force)
         first, fine = self.tick + 1, setup.resolution
-        found = reconfigured(model, block, self.q, konf, setup.dt, first, place, self._qp, fine)
+        found = reconfigured(model, block, self.q, konf, setup.dt, first, place, self.qp, fine)
         left = found.flow.remaining
         why = why_left(found.flow.end, left, found.held, self._robot)
         self.warnings += posture_left(left, why, self._robot, place)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import inf
 
 import numpy as np
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from irlx.blocks import LimitClause, Origin
 from irlx.diagnostics import Diagnostic, Place
+from irlx.pacing.correction.share import planned_limits
 from irlx.pacing.demand import DemandModifier
 from irlx.pacing.inputs import Inputs
 from irlx.pacing.notes import Notes
@@ -31,7 +32,8 @@ class PacingSetup:
     """The robot as a run finds it: model, own limits, weights (n,), start posture (n,), tick in s.
 
     A move may take `max_slow` times as long as programmed, and a tick; `inputs` are what the world says;
-    `resolution` tells how finely motions are worked out.
+    `resolution` tells how finely motions are worked out; motions are planned with `planned_share`
+    of each speed and acceleration limit.
     """
 
     kinematics: Kinematics
@@ -43,6 +45,7 @@ class PacingSetup:
     max_slow: float = inf
     inputs: Inputs = field(default_factory=Inputs)
     resolution: Resolution = EVERY_TICK
+    planned_share: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -89,7 +92,8 @@ class Situation:
 
     def in_force(self, clauses: Iterable[LimitClause] = ()) -> LimitsInForce:
         """Joint limits of a motion with its own clauses."""
-        return limits_in_force(self.setup.limits, self.options, clauses)
+        found, share = limits_in_force(self.setup.limits, self.options, clauses), self.setup.planned_share
+        return found if share == 1.0 else replace(found, limits=planned_limits(found.limits, share))
 
     def model(self, in_force: LimitsInForce) -> Model:
         """What planning needs to know of the robot."""

@@ -15,7 +15,8 @@ class Sample:
     """State at one tick.
 
     `t` in s; `q`, `qd`, `qdd` (n,) rad | m and per s, s2; `tool` (7,) x y z m and quaternion x y z w;
-    `block` is the id of the move in execution.
+    `block` is the id of the move in execution; `correction` (6,) is the one that the tool has, None where no
+    sensor corrects: displacement x y z in m and rotation vector in rad, in the programmed tool frame.
     """
 
     tick: int
@@ -25,3 +26,4 @@ class Sample:
     qdd: Array
     tool: Array
     block: int
+    correction: Array | None = None

@@ -91,6 +91,33 @@ RUN = (
         "turn the tool only about the axis that the robot turns it about",
     ),
     error(
+        "IRL580",
+        "the sensor's correction for tick {tick} is no six numbers, but {found}",
+        "return (dx, dy, dz, rx, ry, rz), m and rad, or None to leave the correction as it is",
+    ),
+    error(
+        "IRL581",
+        "the sensor's correction for tick {tick} is not finite: {found}",
+        "return None where the sensor sees nothing",
+    ),
+    error(
+        "IRL582",
+        "the sensor's correction for tick {tick} is {distance} m and {angle} rad; at most {farthest} m and "
+        "half a turn can be asked for",
+        "corrections are in m and rad",
+    ),
+    error(
+        "IRL583",
+        "a sensor cannot correct a robot whose cell has constraints: {names}",
+        "remove [[constraint]] from the cell, or correct nothing",
+    ),
+    error(
+        "IRL584",
+        "a correction holds {joint} {offset} off its programmed value, which this move has no room for "
+        "between {lower} and {upper}; the joint is frozen or may not move",
+        "let the sensor take the correction back before, or end the freeze or the limit of its speed",
+    ),
+    error(
         "IRL590",
         "this version of irlx reads {what} but does not execute it yet",
         "docs/reference/language.md lists what is executed",

@@ -1,0 +1,225 @@
+"""Corrects the rows of a program tick by tick, as a sensor asks for it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irlx.blocks import Block
+from irlx.diagnostics import Diagnostic, IrlxError, Place, report
+from irlx.pacing.correction.corrected_tick import (
+    Corrected,
+    Surroundings,
+    braked_tick,
+    corrected_tick,
+    movable_joints,
+    stepped,
+    uncorrected,
+)
+from irlx.pacing.correction.offset_limiter import OffsetLimiter
+from irlx.pacing.correction.plan import PlannedMotion, PlannedRow, goes_on, planned_motion
+from irlx.pacing.correction.request import SIZE, read_request
+from irlx.pacing.correction.retreat import AT_GOAL, retreat_goal, retreat_step
+from irlx.pacing.correction.share import correction_limits
+from irlx.pacing.correction.tally import Tally
+from irlx.pacing.correction.tool_offset import corrected_pose, correction_between
+from irlx.pacing.correction.tool_rates import ToolRates
+from irlx.pacing.errors import PacingError
+from irlx.pacing.executed import Executed
+from irlx.pacing.impossible import joint_value
+from irlx.pacing.pacer import Pacer
+from irlx.promises import PATH_ORIENTATION, PATH_POSITION
+from irlx.robot.limits import JointLimits
+from irlx.transform.tick import TickSolver
+
+Array = NDArray[np.float64]
+
+NEWTON_STEPS = 15
+"""Newton steps of a tick before its pose counts as out of reach: there is a nearer one then."""
+
+
+class CorrectedRow(NamedTuple):
+    """A row to emit: posture (n,), rotation (3, 3) and position (3,) m of the tool, its block, correction."""
+
+    q: Array
+    rotation: Array
+    position: Array
+    block: Block
+    correction: Array
+
+
+class Corrector:
+    """Adds corrections to the rows that a pacer has planned with less than the whole limits (`share.py`).
+
+    `ask` gives what the sensor says to the row that was emitted last; `tally` counts what becomes of
+    it. A tick that the robot has to stand for is added to the clock of the pacer.
+    """
+
+    def __init__(self, pacer: Pacer, rates: ToolRates, ask: Callable[[], object], tally: Tally) -> None:
+        self._pacer = pacer
+        setup = pacer.setup
+        self._rates, self._ask = rates, ask
+        self._solver = TickSolver(setup.kinematics, pacer.qp, NEWTON_STEPS)
+        self._modelled = setup.kinematics
+        rotation, position = setup.kinematics.tool_pose(setup.start)
+        start = PlannedRow(setup.start, rotation, position, setup.start, setup.start, None)
+        self._now = uncorrected(start)
+        self._request = np.zeros(6)
+        self._around: Surroundings | None = None
+        self._tick = 0
+        self.tally = tally
+
+    def rows(self, executed: Iterable[Executed]) -> Iterator[CorrectedRow]:
+        """Rows of the blocks, corrected; they end at rest, also where the program ends in an error.
+
+        Raises what the sensor raises, PacingError for what it must not say, and what the blocks raise.
+        """
+        source = iter(executed)
+        while True:
+            try:
+                motion = self._next(source)
+            except IrlxError:
+                yield from self._rest()
+                raise
+            if motion is None:
+                yield from self._rest()
+                return
+            around = self._surroundings(motion)
+            yield from self._made_fit(motion, around)
+            self._begin(around)
+            for row in motion.rows:
+                yield self._moved(row, around)
+
+    def _next(self, source: Iterator[Executed]) -> PlannedMotion | None:
+        """The next motion of the program from stop to stop, None where there is none any more."""
+        parts: list[Executed] = []
+        for executed in source:
+            if executed.rows is not None:
+                parts.append(executed)
+            if not goes_on(executed.rows, bool(parts)) and parts:
+                break
+        limits = next((part.rows.limits for part in parts if part.rows is not None), None)
+        free = self._pacer.options.free_joints(self._now.q.size)
+        return planned_motion(parts, limits or self._pacer.setup.limits, free)
+
+    def _surroundings(self, motion: PlannedMotion) -> Surroundings:
+        setup = self._pacer.setup
+        if setup.kinematics is not self._solver.kinematics:
+            self._solver = TickSolver(setup.kinematics, self._pacer.qp, NEWTON_STEPS)
+        limiter = OffsetLimiter(correction_limits(motion.limits), setup.dt)
+        return Surroundings(self._solver, setup.weights, motion.free, limiter, self._rates)
+
+    def _begin(self, around: Surroundings) -> None:
+        """Go on under what is in force now; a new tool has a correction of its own in the same posture."""
+        now, before = self._now, self._around
+        self._around = around
+        other_tool = around.kinematics is not self._modelled
+        if other_tool:
+            self._modelled = around.kinematics
+            now = _with_tool(now, around)
+        if before is not None and not now.as_planned:
+            same = np.array_equal(around.free, before.free) and np.array_equal(around.weights, before.weights)
+            # The nearest posture is another one now, perhaps far off: nothing may jump there.
+            now = replace(now, bent=now.bent or other_tool or not same)
+        self._now = now
+
+    def _moved(self, row: PlannedRow, around: Surroundings) -> CorrectedRow:
+        """The row after the one emitted last, as the sensor wants it."""
+        place = self._place(row)
+        answer = self._ask()
+        request = read_request(answer, self._tick + 1, around.kinematics.task, place)
+        self.tally.asked(request is not None)
+        if request is not None:
+            self._request = request
+        return self._emitted(corrected_tick(self._now, row, self._request, around), around)
+
+    def _made_fit(self, motion: PlannedMotion, around: Surroundings) -> Iterator[CorrectedRow]:
+        """Rows in which the robot stands until its offset is one that the motion can begin with."""
+        if self._around is None or self._now.as_planned:
+            return
+        if around.solver is not self._around.solver:
+            yield from self._rest()
+        if self._fits(motion, around):
+            return
+        yield from self._rest()
+        first, limits = motion.rows[0], around.limits
+        if not self._fits(motion, around):
+            goal = retreat_goal(self._now.offset, limits, first)
+            stuck = (goal != self._now.offset) & ~movable_joints(self._around)
+            if np.any(stuck):
+                raise PacingError(self._cannot_keep(int(np.argmax(stuck)), limits, first))
+            while np.max(np.abs(self._now.offset - goal)) > AT_GOAL:
+                yield self._standing(
+                    lambda row, old: stepped(
+                        self._now,
+                        row,
+                        retreat_step(self._now.offset, self._now.speed, goal, old.limiter),
+                        old,
+                    )
+                )
+            yield from self._rest()
+
+    def _fits(self, motion: PlannedMotion, around: Surroundings) -> bool:
+        now, first = self._now, motion.rows[0]
+        if np.any(now.speed[~around.free]):
+            return False
+        bounds = around.limiter.bounds(now.offset, now.speed, first.lowest, first.highest)
+        return not bounds.conflicts.size
+
+    def _rest(self) -> Iterator[CorrectedRow]:
+        """Rows in which the robot stands until its offset is at rest."""
+        while self._around is not None and np.any(self._now.speed):
+            yield self._standing(lambda row, around: braked_tick(self._now, row, around))
+
+    def _standing(self, tick: Callable[[PlannedRow, Surroundings], Corrected]) -> CorrectedRow:
+        """A row more than planned: the plan stands."""
+        if self._around is None:
+            raise RuntimeError("nothing has moved yet")
+        self._pacer.tick += 1
+        self.tally.held()
+        return self._emitted(tick(self._now.row.standing(), self._around), self._around)
+
+    def _emitted(self, corrected: Corrected, around: Surroundings) -> CorrectedRow:
+        self._now, self._tick = corrected, self._tick + 1
+        row, block = corrected.row, corrected.row.block
+        if block is None:
+            raise RuntimeError("a row without a block")
+        kinematics = around.kinematics
+        target = corrected_pose(row.rotation, row.position, corrected.correction)
+        left = kinematics.sizes(kinematics.difference(corrected.q, target)[0])
+        if left.distance > PATH_POSITION or left.angle > PATH_ORIENTATION:
+            raise ArithmeticError("a corrected tick lies off its pose: the inverse transform is at fault")
+        missing = self._request - corrected.correction
+        self.tally.ended(missing, self._tick, block.origin.line, corrected.governor, corrected.refused)
+        rotation, position = kinematics.tool_pose(corrected.q)
+        return CorrectedRow(corrected.q, rotation, position, block, corrected.correction)
+
+    def _place(self, row: PlannedRow) -> Place:
+        if row.block is None:
+            raise RuntimeError("a row without a block")
+        return self._pacer.locate(row.block.origin)
+
+    def _cannot_keep(self, joint: int, limits: JointLimits, first: PlannedRow) -> Diagnostic:
+        robot = self._pacer.setup.kinematics.description
+        return report(
+            "IRL584",
+            self._place(first),
+            joint=robot.axes[joint].name,
+            offset=joint_value(robot, joint, float(self._now.offset[joint])),
+            lower=joint_value(robot, joint, float(limits.position_lower[joint])),
+            upper=joint_value(robot, joint, float(limits.position_upper[joint])),
+        )
+
+
+def _with_tool(now: Corrected, around: Surroundings) -> Corrected:
+    """The same robot, at rest, with the tool that it has now and the correction that this one has."""
+    rotation, position = around.kinematics.tool_pose(now.row.q)
+    row = now.row._replace(rotation=rotation, position=position)
+    if now.as_planned:
+        return replace(now, row=row)
+    correction = correction_between(rotation, position, around.kinematics.tool_pose(now.q))
+    return replace(now, row=row, correction=around.of_task(correction), rate=np.zeros(SIZE))

@@ -1,0 +1,61 @@
+"""What a sensor asks for."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irlx.diagnostics import Place, report
+from irlx.pacing.correction.tool_offset import parts
+from irlx.pacing.errors import PacingError
+from irlx.robot.task import Task
+
+Array = NDArray[np.float64]
+
+SIZE = 6
+FARTHEST = 1e3
+"""Largest displacement that may be asked for, m."""
+
+
+def read_request(answer: object, tick: int, task: Task, place: Place) -> Array | None:
+    """The correction (6,) that a sensor asks for at a tick, None where it has nothing new to say.
+
+    Coordinates that the robot's task leaves out count as 0. Raises PacingError: IRL580 for anything but six
+    numbers, IRL581 for numbers that are not finite, IRL582 for more than half a turn or `FARTHEST`.
+    """
+    if answer is None:
+        return None
+    try:
+        found = np.array(answer)
+    except ValueError:
+        found = np.array(None)
+    if found.shape != (SIZE,) or found.dtype.kind not in "iuf":
+        raise PacingError(report("IRL580", place, tick=tick, found=_told(answer)))
+    request = found.astype(np.float64)
+    if not np.all(np.isfinite(request)):
+        raise PacingError(report("IRL581", place, tick=tick, found=_numbers(request)))
+    distance, angle = parts(request)
+    if distance > FARTHEST or angle > pi:
+        told: dict[str, Any] = {
+            "distance": f"{distance:.6g}",
+            "angle": f"{angle:.6g}",
+            "farthest": f"{FARTHEST:g}",
+        }
+        raise PacingError(report("IRL582", place, tick=tick, **told))
+    for left_out in set(range(SIZE)) - set(task.rows):
+        request[left_out] = 0.0
+    return request
+
+
+def _numbers(request: Array) -> str:
+    return ", ".join(f"{value:.6g}" for value in request)
+
+
+def _told(answer: object) -> str:
+    """What a wrong answer is, in a few words."""
+    size = getattr(answer, "shape", None) or (len(answer) if hasattr(answer, "__len__") else None)
+    kind = type(answer).__name__
+    return kind if size is None else f"{kind} of {size}"
