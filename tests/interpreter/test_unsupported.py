@@ -14,10 +14,6 @@ STATEMENTS = [
     ("MOVE LIN p WITH TOLERANCE (0, 0, 0, 0, 0, 9);", "WITH TOLERANCE", "WITH TOLERANCE (0, 0, 0, 0, 0, 9)"),
 ]
 
-DECLARATIONS = [
-    ("ROBOT r := left;", "ROBOT", "ROBOT r := left"),
-]
-
 FUNCTIONS = ["CLEARANCE(j, wall)"]
 
 
@@ -36,13 +32,6 @@ def test_statements(run_error, statement, what, marked):
     message = f"this version of irlx reads {what} but does not execute it yet"
     assert run_error(START, statement) == ("IRL590", message, marked)
     assert warnings_of(program(START, statement))[0] == ("IRL591", what, marked)
-
-
-@pytest.mark.parametrize(("declaration", "what", "marked"), DECLARATIONS)
-def test_declarations(run_error, declaration, what, marked):
-    message = f"this version of irlx reads {what} but does not execute it yet"
-    assert run_error(declaration, "") == ("IRL590", message, marked)
-    assert warnings_of(program(declaration, "")) == [("IRL591", what, marked)]
 
 
 @pytest.mark.parametrize("call", FUNCTIONS)
@@ -88,7 +77,7 @@ def test_what_is_executed_is_not_warned_about():
 def test_every_finding_is_reported_in_order():
     body = "OBSTACLE a; MOVE_INC LIN p WITH TOLERANCE (1, 1, 1, 1, 1, 1); OBSTACLEEND a;"
     found = warnings_of(program("ROBOT r := left;", body))
-    assert [what for _, what, _ in found] == ["ROBOT", "OBSTACLE", "WITH TOLERANCE", "OBSTACLEEND"]
+    assert [what for _, what, _ in found] == ["OBSTACLE", "WITH TOLERANCE", "OBSTACLEEND"]
 
 
 SILENT = [

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import PurePath
 from unicodedata import normalize
 
 from irlx.cell.cell import Cell
@@ -30,4 +32,10 @@ def setting_of(cell: Cell) -> Setting:
     }
     axes = cell.robot.axes
     slides, weights = tuple(axis.is_prismatic for axis in axes), tuple(map(float, cell.weights))
-    return Setting(cell.robot.joint_names, slides, defaults, poses, weights)
+    return Setting(cell.robot.joint_names, slides, defaults, poses, weights, _robot_names(cell))
+
+
+def _robot_names(cell: Cell) -> tuple[str, ...]:
+    """Names of the robot as a program can write them: what no name may hold becomes _."""
+    given = (cell.robot.name, PurePath(cell.model).stem)
+    return tuple(dict.fromkeys(re.sub(r"\W", "_", normalize("NFC", name)) for name in given))

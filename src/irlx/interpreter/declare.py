@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from irlx.diagnostics import SourceText
+from irlx.diagnostics.diagnostic import near_matches
 from irlx.interpreter.code import Assembler, Code, Frame
 from irlx.interpreter.compiled import Run
 from irlx.interpreter.context import Context
@@ -92,8 +93,17 @@ class Unit:
                 self._types.define(part)
             elif isinstance(part, tree.ConstDeclaration):
                 self._add(part.type, part.constants, constant=True)
+            elif isinstance(part, tree.RobotBinding):
+                self._check_robot(part)
             elif not isinstance(part, EXECUTED_DECLARATIONS):
                 raise fail("IRL590", self._source, part.span, what=part_name(part))
+
+    def _check_robot(self, part: tree.RobotBinding) -> None:
+        """A cell has one robot, and ROBOT names it. Raises InterpreterError, IRL572, for another one."""
+        known = self._world.setting.robots
+        if known and part.robot.key not in {name.casefold() for name in known}:
+            data = {"near": near_matches(part.robot.name, known), "known": " or ".join(known)}
+            raise fail("IRL572", self._source, part.robot.span, name=part.robot.name, **data)
 
     def _bind(self, part: tree.StandardChannel) -> None:
         """Put a variable of type FILE in the place of a standard channel. Raises InterpreterError, IRL222."""

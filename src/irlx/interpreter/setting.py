@@ -38,7 +38,8 @@ class Setting:
 
     `defaults` maps names of system variables to the values that they start with: mm/s, mm/s2, deg/s, deg/s2,
     %, mm/s3, mm. `poses` are named poses of the cell in the root frame of the robot: position in mm,
-    quaternion scalar first. `weights` are those of the joints, 1 each where none are given.
+    quaternion scalar first. `weights` are those of the joints, 1 each where none are given. `robots` are the
+    names by which ROBOT may call the robot.
     """
 
     joint_names: tuple[str, ...]
@@ -48,6 +49,7 @@ class Setting:
         default_factory=dict
     )
     weights: tuple[float, ...] = ()
+    robots: tuple[str, ...] = ()
 
     def default(self, name: str) -> Default:
         """What the system variable of a name starts with."""

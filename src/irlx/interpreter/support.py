@@ -28,13 +28,13 @@ EXECUTED_DECLARATIONS = (
     tree.FunctionDeclaration,
     tree.SignalDeclaration,
     tree.StandardChannel,
+    tree.RobotBinding,
 )
 _CLAUSES = (tree.WithLimit, tree.WithReconfiguration, tree.WithCriterion)
 _EXECUTED_FUNCTIONS = frozenset({*FUNCTIONS, *ASKING, "eof", *builtins.TYPES}) - LATER_TYPES
 _READ_ONLY_FUNCTIONS = frozenset(builtins.FUNCTIONS) - _EXECUTED_FUNCTIONS
 
 _NAMES: dict[type[tree.Node], str] = {
-    tree.RobotBinding: "ROBOT",
     tree.ObstacleStart: "OBSTACLE",
     tree.ObstacleEnd: "OBSTACLEEND",
     tree.WithTolerance: "WITH TOLERANCE",

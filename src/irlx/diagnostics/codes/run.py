@@ -91,6 +91,11 @@ RUN = (
         "turn the tool only about the axis that the robot turns it about",
     ),
     error(
+        "IRL572",
+        "the cell has no robot '{name}'{near}; its robot is {known}",
+        "name that robot, or give the cell of the other one",
+    ),
+    error(
         "IRL580",
         "the sensor's correction for tick {tick} is no six numbers, but {found}",
         "return (dx, dy, dz, rx, ry, rz), m and rad, or None to leave the correction as it is",
