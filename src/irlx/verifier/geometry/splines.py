@@ -20,6 +20,9 @@ CELLS = 32
 TOGETHER, SPREAD = 32, 0.2
 """Rows sought together, and the part by which a way on the curve may differ from that from row to row."""
 
+TRIED = 8
+"""Samples tried for a row that is on the curve about none of those sought first."""
+
 NEWTON, LAST_STEP = 12, 1e-13
 """Steps of Newton's method for the parameter at a way at most, and the step after which it ends."""
 
@@ -79,12 +82,17 @@ class SplineCurve:
         """Way (R,) to the nearest points about the seeds, or, of rows that are on none of them, about any."""
         way = self._nearest(positions, seeds)
         off = np.linalg.norm(positions - self.points(way), axis=1)
-        lost = np.flatnonzero(off > PATH_POSITION)
-        if lost.size:
-            apart = np.sum((positions[lost, None] - self._samples) ** 2, axis=2)
-            other = self._nearest(positions[lost], self._grid[np.argmin(apart, axis=1)])
-            on_it = np.linalg.norm(positions[lost] - self.points(other), axis=1) <= PATH_POSITION
-            way[lost[on_it]] = other[on_it]
+        for row in np.flatnonzero(off > PATH_POSITION).tolist():
+            # In a narrow bend the nearest sample may be one of the other side: all that are near are tried.
+            apart = np.sum((positions[row] - self._samples) ** 2, axis=1)
+            places = self._grid[np.argsort(apart)[:TRIED]]
+            other = self._nearest(np.repeat(positions[row : row + 1], TRIED, axis=0), places)
+            apart = np.linalg.norm(positions[row] - self.points(other), axis=1)
+            fits = np.flatnonzero(apart <= PATH_POSITION)
+            if not fits.size:
+                # Off the curve, and with it perhaps all that follow: these are not sought for ever.
+                break
+            way[row] = other[fits[np.argmin(np.abs(other[fits] - way[row]))]]
         return way
 
     def _nearest(self, positions: Floats, seeds: Floats) -> Floats:

@@ -14,7 +14,8 @@ from irlx.streams.joint_stream import Floats, StreamHeader
 from irlx.verifier.evidence import Evidence
 from irlx.verifier.findings.finding import FAILED, NOT_CHECKED, OK, Check
 from irlx.verifier.geometry.rotations import angle_between, from_quaternion
-from irlx.verifier.rows import Rows
+from irlx.verifier.rows import Rows, Stretch
+from irlx.verifier.tools import Pose
 
 
 @dataclass(frozen=True)
@@ -66,21 +67,50 @@ def check_robot_limits(header: StreamHeader, reference: Reference | None, other_
 
 
 class ToolChecks:
-    """The recorded tool pose is the one that the joint values give."""
+    """The recorded tool pose is the one that the joint values give.
+
+    A format without blocks does not tell which tool a motion has: there it is that of its first row.
+    """
 
     def __init__(self, evidence: Evidence) -> None:
+        outline = evidence.outline
+        self._tells = bool(outline.records) or not outline.ids.any()
+        self._own = np.zeros((1, 3)), np.eye(3)[None]
+        self._changes = 0
         self._position = evidence.tally("tool position", "m")
         self._orientation = evidence.tally("tool orientation", "rad")
 
     def take(self, rows: Rows) -> None:
         """Add a portion."""
-        apart = np.linalg.norm(rows.tool[:, :3] - rows.positions[1:], axis=1)
+        positions, rotations = (rows.positions[1:], rows.rotations[1:]) if self._tells else self._told(rows)
+        apart = np.linalg.norm(rows.tool[:, :3] - positions, axis=1)
         self._position.add(rows.rows, apart, TOOL_POSITION)
         quaternions = rows.tool[:, 3:]
-        turned = angle_between(from_quaternion(quaternions), rows.rotations[1:])
+        turned = angle_between(from_quaternion(quaternions), rotations)
         # Of some orientations a quaternion of any length gives the matrix.
         odd = np.abs(np.linalg.norm(quaternions, axis=1) - 1.0)
         self._orientation.add(rows.rows, np.maximum(turned, odd), TOOL_ORIENTATION)
+
+    def _told(self, rows: Rows) -> Pose:
+        """Poses (R, ..) of tools that change with the first row of a motion, if that has another one."""
+        found = [self._of_stretch(rows, stretch) for stretch in rows.stretches]
+        positions, rotations = zip(*found, strict=True)
+        if self._changes:
+            words = f"without blocks the tools of {self._changes} motions are taken from their first rows"
+            self._position.detail = self._orientation.detail = words
+        return np.concatenate(positions), np.concatenate(rotations)
+
+    def _of_stretch(self, rows: Rows, stretch: Stretch) -> Pose:
+        tips = rows.tips[0][stretch.after], rows.tips[1][stretch.after]
+        if stretch.begins and stretch.block:
+            recorded = rows.tool[stretch.part.start]
+            turned = tips[1][0].T @ from_quaternion(recorded[3:])
+            tool = (tips[1][0].T @ (recorded[:3] - tips[0][0]))[None], turned[None]
+            same = np.linalg.norm(tool[0] - self._own[0]) <= TOOL_POSITION
+            if not same or angle_between(turned, self._own[1][0]) > TOOL_ORIENTATION:
+                self._own = tool
+                self._changes += 1
+        return tips[0] + tips[1] @ self._own[0][0], tips[1] @ self._own[1][0]
 
     def checks(self) -> list[Check]:
         """Tool position and orientation."""

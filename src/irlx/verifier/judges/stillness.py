@@ -15,12 +15,19 @@ from irlx.verifier.rows import Rows, Stretch
 
 class StopChecks:
     """The last row of every motion repeats the row before it: the robot stands, with a tick to show it. Rows
-    before the first motion all repeat the start posture. A move that passes its target does not stop."""
+    before the first motion all repeat the start posture. A move that passes its target does not stop;
+    where there are no blocks nothing tells which may."""
 
     def __init__(self, evidence: Evidence) -> None:
         self._outline = evidence.outline
         self._tally = evidence.tally("stops", "rad|m")
         self._passing = _passing(evidence)
+        tells = bool(evidence.outline.records) or not evidence.outline.ids.any()
+        self._untold = 0
+        if not tells:
+            moving = zip(evidence.outline.ids[:-1].tolist(), evidence.outline.held[:-1], strict=True)
+            self._passing = frozenset(number for number, held in moving if number and not held)
+            self._untold = len(self._passing)
 
     def take(self, rows: Rows) -> None:
         """Add a portion."""
@@ -42,6 +49,10 @@ class StopChecks:
 
     def checks(self) -> list[Check]:
         """Stops."""
+        if self._untold:
+            self._tally.detail = (
+                f"{self._untold} motions run into the next one: without blocks nothing tells whether they may"
+            )
         return [self._tally.check()]
 
 

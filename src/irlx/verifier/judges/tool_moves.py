@@ -56,6 +56,8 @@ class ToolMoveChecks:
         for chain in evidence.chains:
             if chain[0].move.start == chain[-1].move.last:
                 self._add_resting_chain(chain)
+        for demand in evidence.demands.values():
+            self._add_joined_time(demand)
 
     def take(self, rows: Rows) -> None:
         """Add a portion."""
@@ -195,6 +197,16 @@ class ToolMoveChecks:
         short = np.array([due - (move.last - move.start - held) * self._dt])
         allowed = TICK_SHARE * self._dt + PROGRAM_EXCESS * due
         self._time.add(stretch.rows[-1:], short, allowed, rank=short / allowed)
+
+    def _add_joined_time(self, demand: Demand) -> None:
+        """A joined move, or one along a PATH, takes its TIME from hand-over to hand-over, in ticks."""
+        move, due = demand.move, demand.move.law.duration
+        joined = demand.passes or demand.follows
+        if due is None or not move.finished or not (joined or move.block.id in self._chains):
+            return
+        short = np.array([due - (move.last - move.start) * self._dt])
+        allowed = (HANDS_OVER if joined else TICK_SHARE) * self._dt + PROGRAM_EXCESS * due
+        self._time.add(np.array([move.last]), short, allowed, rank=short / allowed)
 
     def _add_joint_rates(self, rows: Rows, stretch: Stretch, move: MoveRows) -> None:
         """A PTP uses at most its share of every joint's limits, where these are finite."""
