@@ -12,6 +12,9 @@ from irlx.verifier.geometry.bernstein import bernstein, quintic_control
 from irlx.verifier.geometry.paths import shortest_turns
 from irlx.verifier.geometry.rotations import about_axis, cross_matrix, rotation_vectors
 
+SAME_SHARE = 1e-9
+"""Shares nearer to that of a via point than this are the same to rounding."""
+
 
 class Turning(NamedTuple):
     """Orientation (3, 3) at a place, and by the way there its angular rate and the change of that, (3,), both
@@ -32,8 +35,8 @@ class Attitude(Protocol):
     def at(self, share: Floats) -> Floats:
         """Rotations (R, 3, 3) at shares (R,)."""
 
-    def turning(self, share: float) -> Turning:
-        """Orientation and its rates, by the share, at a share."""
+    def turnings(self, share: float) -> list[Turning]:
+        """Orientation and its rates, by the share, at a share: where they jump on both sides of it."""
 
 
 class SteadyTurn:
@@ -49,10 +52,10 @@ class SteadyTurn:
         """Rotations (R, 3, 3) at shares (R,) of the way."""
         return np.asarray(self._start @ about_axis(self._axis, share * self.angle))
 
-    def turning(self, share: float) -> Turning:
+    def turnings(self, share: float) -> list[Turning]:
         """Orientation and its rates at a share."""
         rate = self._start @ self._axis * self.angle
-        return Turning(self.at(np.array([share]))[0], rate, np.zeros(3))
+        return [Turning(self.at(np.array([share]))[0], rate, np.zeros(3))]
 
 
 class ViaTurn:
@@ -74,12 +77,16 @@ class ViaTurn:
         from_via = self._turns[1].at(1.0 - eased(left))
         return np.asarray(np.where((share < self._via)[:, None, None], to_via, from_via))
 
-    def turning(self, share: float) -> Turning:
-        """Orientation and its rates at a share."""
-        before = share < self._via
+    def turnings(self, share: float) -> list[Turning]:
+        """Orientation and its rates at a share; at the via point on both sides of it."""
+        if abs(share - self._via) <= SAME_SHARE:
+            return [self._turning(self._via, before) for before in (True, False)]
+        return [self._turning(share, share < self._via)]
+
+    def _turning(self, share: float, before: bool) -> Turning:
         whole = self._via if before else 1.0 - self._via
         rate, change = eased_rates(share / whole if before else (1.0 - share) / whole)
-        along = self._turns[0 if before else 1].turning(0.0).rate
+        along = self._turns[0 if before else 1].turnings(0.0)[0].rate
         sign = 1.0 if before else -1.0
         return Turning(self.at(np.array([share]))[0], along * rate / whole, sign * along * change / whole**2)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from itertools import product
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from irlx.streams.joint_stream import Floats
 from irlx.verifier.geometry.attitudes import BlendedTurn
 from irlx.verifier.geometry.bernstein import GAUSS, Jets, bernstein, nearest_parameters, quintic_control
 from irlx.verifier.geometry.curves import Curve
+from irlx.verifier.geometry.rotations import angle_between
 
 CELLS = 32
 """Parts of a join by its parameter: where the nearest point is sought, and the length summed."""
@@ -75,15 +77,19 @@ class Blend:
         cell = np.minimum((u * CELLS).astype(np.int64), CELLS - 1)
         return np.asarray(self._lengths[cell] + self._length_between(cell / CELLS, u))
 
-    def rotations(self, u: Floats) -> Floats:
-        """Orientations (R, 3, 3)."""
-        return self._turn.at(np.clip(self.way(u) / self.length, 0.0, 1.0))
+    def turned_off(self, u: Floats, rotations: Floats) -> Floats:
+        """Angle (R,) rad between rotations (R, 3, 3) and the orientation at u (R,).
+
+        Where the rates of a curve jump just where the blend begins or ends, it may take up either.
+        """
+        share = np.clip(self.way(u) / self.length, 0.0, 1.0)
+        return np.asarray(np.min([angle_between(rotations, turn.at(share)) for turn in self._turns], axis=0))
 
     @cached_property
-    def _turn(self) -> BlendedTurn:
-        base = self._curves[1].turning(0.0).rotation
-        start, end = (curve.turning(way) for curve, way in zip(self._curves, self._ways, strict=True))
-        return BlendedTurn(base, (start, end), self.length)
+    def _turns(self) -> list[BlendedTurn]:
+        base = self._curves[1].turnings(0.0)[0].rotation
+        starts, ends = (curve.turnings(way) for curve, way in zip(self._curves, self._ways, strict=True))
+        return [BlendedTurn(base, pair, self.length) for pair in product(starts, ends)]
 
     def _jet_at(self, u: Floats) -> Jets:
         return self.points(u), bernstein(u, 4) @ self._rate, bernstein(u, 3) @ self._change

@@ -241,13 +241,16 @@ class ChainWay:
         if part.blend:
             blend = self._blends[leg]
             assert blend is not None
-            due, along = blend.rotations(at), base + curve.length - blend.distance + blend.way(at)
+            turned, along = (
+                blend.turned_off(at, rotations[here]),
+                base + curve.length - blend.distance + blend.way(at),
+            )
             placed.leg[here] = leg + (at > blend.corner)
         else:
-            due, along = curve.rotations(at), base + at
+            turned, along = angle_between(rotations[here], curve.rotations(at)), base + at
             placed.leg[here] = leg
         placed.position[here], placed.along[here] = off, along
-        placed.orientation[here] = angle_between(rotations[here], due)
+        placed.orientation[here] = turned
         placed.straight[here] = not part.blend
         placed.bend[here] = self._bends(part, at)
         placed.sharp[start] = self._is_sharp_between(self._near[0], part)

@@ -125,19 +125,19 @@ def _worst(legs: tuple[Curve, Curve], distance: float, rows: _Rows) -> float:
     """How far rows are off a path with a blend of a distance, in tolerances; the worst of them."""
     first, second = legs
     before, behind = np.minimum(rows.way, first.length - distance), np.maximum(rows.there, distance)
-    poses = [
-        (first.points(before), first.rotations(before)),
-        (second.points(behind), second.rotations(behind)),
+    offs = [
+        (first.points(before), angle_between(rows.rotations, first.rotations(before))),
+        (second.points(behind), angle_between(rows.rotations, second.rotations(behind))),
     ]
     if distance > PATH_STEP:
         blend = Blend(first, second, distance)
         u = blend.nearest(rows.positions)
-        poses.append((blend.points(u), blend.rotations(u)))
-    offs = []
-    for points, rotations in poses:
-        apart = np.linalg.norm(rows.positions - points, axis=1) / PATH_POSITION
-        offs.append(np.maximum(apart, angle_between(rows.rotations, rotations) / PATH_ORIENTATION))
-    return float(np.max(np.min(offs, axis=0)))
+        offs.append((blend.points(u), blend.turned_off(u, rows.rotations)))
+    shares = [
+        np.maximum(np.linalg.norm(rows.positions - points, axis=1) / PATH_POSITION, turned / PATH_ORIENTATION)
+        for points, turned in offs
+    ]
+    return float(np.max(np.min(shares, axis=0)))
 
 
 def _root(function: Callable[[float], float], most: float) -> float:

@@ -54,8 +54,8 @@ class Curve(Protocol):
     def rotations(self, way: Floats) -> Floats:
         """Orientations (R, 3, 3)."""
 
-    def turning(self, way: float) -> Turning:
-        """Orientation and its rates by the way, at a place."""
+    def turnings(self, way: float) -> list[Turning]:
+        """Orientation and its rates by the way, at a place: where they jump on both sides of it."""
 
 
 class LineCurve:
@@ -100,7 +100,7 @@ class LineCurve:
         """Orientations (R, 3, 3)."""
         return self._turn.at(way / self.length if self.length > 0.0 else np.ones_like(way))
 
-    def turning(self, way: float) -> Turning:
+    def turnings(self, way: float) -> list[Turning]:
         """Orientation and its rates at a place."""
         return _by_way(self._turn, way, self.length)
 
@@ -159,11 +159,13 @@ class ArcCurve:
         """Orientations (R, 3, 3)."""
         return self._turn.at(way / self.length)
 
-    def turning(self, way: float) -> Turning:
+    def turnings(self, way: float) -> list[Turning]:
         """Orientation and its rates at a place."""
         return _by_way(self._turn, way, self.length)
 
 
-def _by_way(turn: Attitude, way: float, length: float) -> Turning:
-    rotation, rate, change = turn.turning(way / length)
-    return Turning(rotation, rate / length, change / length**2)
+def _by_way(turn: Attitude, way: float, length: float) -> list[Turning]:
+    return [
+        Turning(rotation, rate / length, change / length**2)
+        for rotation, rate, change in turn.turnings(way / length)
+    ]

@@ -134,11 +134,11 @@ class SplineCurve:
             found[here] = self._turn(piece, width).at(share)
         return found
 
-    def turning(self, way: float) -> Turning:
+    def turnings(self, way: float) -> list[Turning]:
         """Orientation and its rates by the way, at an end of which a blend takes over in the piece there."""
         piece = int(np.clip(np.searchsorted(self._knots, way, side="right") - 1, 0, self._pieces - 1))
         width = float(self._knots[piece + 1] - self._knots[piece])
-        return self._turn(piece, width).turning((way - float(self._knots[piece])) / width)
+        return [self._turn(piece, width).turning((way - float(self._knots[piece])) / width)]
 
     def _turn(self, piece: int, width: float) -> BlendedTurn:
         start, end = self._turnings[piece], self._turnings[piece + 1]
