@@ -358,3 +358,17 @@ def test_joined_joint_moves_keep_their_shares(gantry_kit, robot) -> None:
         if block is not None:
             assert [check.name for check in report.failed] == ["programmed speed"]
             assert report["programmed speed"].first.block == block
+
+
+def test_where_a_joint_move_hands_over_the_larger_share_holds(gantry_kit, robot) -> None:
+    """The rail comes to rest in the second move: its first rows may be as fast as the first move."""
+    stream = joined_ptps(gantry_kit)
+    speeds = np.abs(np.diff(stream.q[:, 0])) / gantry_kit.DT
+    behind = speeds[np.flatnonzero(stream.block == 2)[0] - 1 :]
+    infinite = np.full(7, np.inf)
+    fastest = np.array([np.max(speeds), *infinite[1:]])
+    limits = JointLimits(-infinite, infinite, -fastest, fastest, -infinite, infinite)
+    for share, passes in ((1.001 * behind[3], True), (0.999 * behind[3], False)):
+        slow = joined_ptps(gantry_kit, (1.0, share / np.max(speeds)))
+        report = verify_stream(replace(slow, header=replace(slow.header, limits=limits)), robot)
+        assert report.passed is passes, str(report)
