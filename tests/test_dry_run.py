@@ -111,3 +111,20 @@ def test_it_takes_a_fifth_of_the_time_of_the_motion(tmp_path) -> None:
             taken.append(time.process_time() - begin)
         seconds.append(min(taken))
     assert seconds[1] * 5.0 < seconds[0], seconds
+
+
+def test_it_reads_in_the_folder_that_it_is_given(tmp_path, capsys) -> None:
+    (tmp_path / "data").mkdir()
+    (tmp_path / "data" / "ways.txt").write_text("150\n")
+    (tmp_path / "r.toml").write_text('[robot]\nmodel = "arm7"\n')
+    body = "OPEN(f, 'ways.txt', 'READ');\nREAD(f, y);\nCLOSE(f);\nMOVE LIN POSITION(441, y, 324);"
+    (tmp_path / "r.irl").write_text(f"PROGRAM r;\nVAR FILE: f; REAL: y;\nBEGIN\n{body}\nENDPROGRAM;\n")
+    assert main(["check", str(tmp_path / "r.irl"), "--motion", "--files", str(tmp_path / "data")]) == 0
+    assert [one.code for one in irlx.check(tmp_path / "r.irl", motion=True)] == ["IRL541"]
+    capsys.readouterr()
+
+
+def test_nobody_is_asked_on_standard_in(tmp_path) -> None:
+    (tmp_path / "s.toml").write_text('[robot]\nmodel = "arm7"\n')
+    (tmp_path / "s.irl").write_text("PROGRAM s;\nVAR INT: i;\nBEGIN\nREAD(i);\nWRITE(i);\nENDPROGRAM;\n")
+    assert [one.code for one in irlx.check(tmp_path / "s.irl", motion=True)] == ["IRL546"]

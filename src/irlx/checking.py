@@ -25,13 +25,14 @@ def check(
     motion: bool = False,
     max_steps: int | None = None,
     inputs: InputsGiven = None,
+    files: PathLike | None = None,
 ) -> list[Diagnostic]:
     """All findings on a program, and on a cell file where one is given; raises nothing for its input.
 
     Names of frames and the number of joints come from `cell`, or from the cell that a run would find; of that
     one nothing else is looked at. With `motion` a program without errors is executed in a dry run, at a
-    coarse tick, in the cell that a run would take; `max_steps` and `inputs` are those of `irlx.run`. Without
-    `cell` and `motion` this loads neither numpy nor Pinocchio.
+    coarse tick, in the cell that a run would take; `max_steps`, `inputs` and `files` are those of `irlx.run`.
+    Without `cell` and `motion` this loads neither numpy nor Pinocchio.
     """
     joints, of_cell = _cell_findings(cell) if cell is not None else (None, [])
     try:
@@ -43,7 +44,7 @@ def check(
         later = unsupported(analysis.tree, analysis.source, analysis.data_lists, analysis.modules)
         moves = motion and not any(one.is_error for one in (*found, *later, *of_cell))
         if moves:
-            in_motion, of_cell = _motion_findings(program, cell, max_steps, inputs)
+            in_motion, of_cell = _motion_findings(program, cell, max_steps, inputs, files)
             later = [*later, *in_motion]
         kept, unused = without_ignored(later, analysis.ignores)
         found += kept
@@ -57,7 +58,11 @@ def check(
 
 
 def _motion_findings(
-    program: PathLike, cell: PathLike | None, max_steps: int | None, inputs: InputsGiven
+    program: PathLike,
+    cell: PathLike | None,
+    max_steps: int | None,
+    inputs: InputsGiven,
+    files: PathLike | None,
 ) -> tuple[list[Diagnostic], list[Diagnostic]]:
     """Findings of a dry run, and those on the cell that it took or did not find."""
     # Imported here: motion loads numpy, and most checks have none.
@@ -65,7 +70,8 @@ def _motion_findings(
     from irlx.job import prepare
 
     try:
-        job = prepare(program, cell, max_steps=max_steps, inputs=inputs)
+        # Nobody is asked at a check: what is read from STANDARD_IN has its end at once.
+        job = prepare(program, cell, max_steps=max_steps, inputs=inputs, files=files, input="")
         return dry_run(job), list(job.cell.warnings)
     except IrlxError as error:
         return [], list(error.diagnostics)

@@ -48,7 +48,7 @@ def command(options: argparse.Namespace) -> int:
     from irlx.cli.output import exit_code
 
     import_plugins(options.plugin)
-    asked = options.cell, options.motion, options.max_steps, options.inputs
+    asked = options.cell, options.motion, options.max_steps, options.inputs, options.files
     checked = [(program, check(program, *asked)) for program in options.programs]
     if options.format == "text":
         _print_text(checked)
