@@ -52,8 +52,8 @@ def slowed(
     data: dict[str, Any] = {
         "lost": f"{lost:.2g}",
         "share": f"{100.0 * share:.2g}",
-        "achieved": f"{costliest.achieved * scale:.3g}",
-        "requested": f"{costliest.requested * scale:.3g} {unit}/s",
+        "achieved": f"{costliest.achieved * scale:.4g}",
+        "requested": f"{costliest.requested * scale:.4g} {unit}/s",
         "held": _held(costliest, rows.limits or own, kinematics),
         **_at(costliest.s, rows, path),
     }
