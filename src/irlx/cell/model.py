@@ -15,7 +15,8 @@ from irlx.cell.schema import RobotSection, Section
 from irlx.diagnostics import Place, report
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.robot.description import COORDINATES, RobotDescription
-from irlx.robot.urdf import RobotModelError, read_urdf
+from irlx.robot.urdf import read_urdf
+from irlx.robot.urdf_values import RobotModelError
 
 
 def with_packaged_defaults(asked: RobotSection) -> RobotSection:
