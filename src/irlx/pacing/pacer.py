@@ -24,6 +24,7 @@ from irlx.blocks import (
     MachineQuestion,
     MoveBlock,
     MoveKind,
+    ObstacleBlock,
     Origin,
     PauseBlock,
     PoseTarget,
@@ -38,6 +39,7 @@ from irlx.pacing.beyond import posture_beyond, ticks_beyond
 from irlx.pacing.executed import Executed
 from irlx.pacing.inputs import answer_of_inputs
 from irlx.pacing.joint_moves import move_joints
+from irlx.pacing.kept_clear import kept_clear
 from irlx.pacing.motion import Motion
 from irlx.pacing.notes import Notes
 from irlx.pacing.options import LimitsInForce, Options, SwitchBlock
@@ -72,6 +74,7 @@ class Pacer:
         self.warnings: list[Diagnostic] = []
         self.notes = Notes(self.warnings)
         self._last_way = (0.0, 0.0)
+        self._clearance = kept_clear(setup.kinematics, setup.scene, self.options)
 
     def answer(self, question: MachineQuestion) -> tuple[float, ...]:
         """Answer to a question of the interpreter, all blocks before it executed.
@@ -107,6 +110,7 @@ class Pacer:
             self.locate,
             self.warnings,
             self.notes,
+            self._clearance,
         )
 
     @property
@@ -183,6 +187,8 @@ class Pacer:
             self._solver = TickSolver(self._setup.kinematics, self.qp)
         if isinstance(block, SwitchBlock):
             self.options = self.options.after(block, self.q)
+        if isinstance(block, ToolBlock | ObstacleBlock):
+            self._clearance = kept_clear(self._setup.kinematics, self._setup.scene, self.options)
         return None
 
     def _motion(self, moves: list[MoveBlock]) -> Motion:
