@@ -82,15 +82,23 @@ class Clearance:
         What was inside its margin at the start may stay as near as it was.
         """
         near = self._within(q)
-        found = near.distance < self._floors(near.pairs, start) - ALLOWANCE
+        found = near.distance < self.floors(near.pairs, start) - ALLOWANCE
         return self.nearest(q, start) if np.any(found) else None
+
+    def first_short(self, q: Array, start: Array) -> tuple[int, TooNear] | None:
+        """The first of postures q (N, n) at which `short` finds a pair, and that pair; None where none has."""
+        for row, posture in enumerate(q):
+            found = None if self.distances.far(posture) else self.short(posture, start)
+            if found is not None:
+                return row, found
+        return None
 
     def nearest(self, q: Array, start: Array) -> TooNear | None:
         """The pair with the least room above what it must keep at q (n,), of those within their influence."""
         near = self._within(q)
         if not len(near.pairs):
             return None
-        floors = self._floors(near.pairs, start)
+        floors = self.floors(near.pairs, start)
         k = int(np.argmin(near.distance - floors))
         return TooNear(int(near.pairs[k]), float(near.distance[k]), float(floors[k]))
 
@@ -98,9 +106,13 @@ class Clearance:
         distances = self.distances
         return distances.near(q, np.maximum(distances.influence, distances.margin + RESERVE))
 
-    def _floors(self, pairs: Numbers, start: Array) -> Array:
-        margin = self.distances.margin[pairs]
-        return np.asarray(np.minimum(margin, self.distances.of(start, pairs).distance))
+    def floors(self, pairs: Numbers, start: Array, reserve: float = 0.0) -> Array:
+        """Distance (P,) that pairs must keep in a motion from posture `start` (n,): margin and reserve, m.
+
+        What is nearer at the start may stay as near as it is.
+        """
+        least = self.distances.margin[pairs] + reserve
+        return np.asarray(np.minimum(least, self.distances.of(start, pairs).distance))
 
 
 class TickClearance:
