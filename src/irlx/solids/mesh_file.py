@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -12,15 +13,21 @@ from numpy.typing import NDArray
 from irlx.solids.shape import Mesh
 from irlx.solids.triangles import Triangles
 
-FORMATS = ("stl", "obj", "ply", "dae")
-"""Endings of the mesh files that are read, without the dot, in small letters."""
+_TRIMESH = {"trimesh": "trimesh"}
+READERS = {
+    "stl": _TRIMESH,
+    "obj": _TRIMESH,
+    "ply": _TRIMESH,
+    "dae": {**_TRIMESH, "collada": "pycollada"},
+}
+"""Endings of the mesh files that are read, and the modules that read them with the packages they are in."""
 _SAME = 1e-7
 """Vertices nearer than this share of a mesh's extent are one; files repeat them for every face."""
 _FLAT = 1e-12
 """Share of the volume of its bounding box that a surface has to enclose."""
 _FARTHEST = 1e12
 """Coordinates of a mesh file lie below; beyond, squares and products of them say nothing."""
-_KEPT = 64
+_KEPT = 256
 
 
 class MeshFileError(ValueError):
@@ -46,8 +53,8 @@ def read_mesh(mesh: Mesh) -> Triangles:
     """
     path = Path(mesh.file)
     ending = path.suffix[1:].lower()
-    if ending not in FORMATS:
-        raise MeshFileError(f"'{path.suffix}' is no format of meshes that irlx reads: {', '.join(FORMATS)}")
+    if ending not in READERS:
+        raise MeshFileError(f"'{path.suffix}' is no format of meshes that irlx reads: {', '.join(READERS)}")
     try:
         state = path.stat()
     except (OSError, ValueError) as cause:
@@ -103,28 +110,26 @@ def _content(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
 
 def _loaded(path: Path) -> Any:
     """What trimesh makes of a file, one mesh of all that it holds. Raises MeshFileError."""
-    try:
-        import trimesh
-    except ImportError as cause:
-        raise MeshReaderMissing("the package trimesh is not installed") from cause
-    collada = path.suffix.lower() == ".dae"
-    if collada:
+    ending = path.suffix[1:].lower()
+    for module, package in READERS[ending].items():
         try:
-            import collada as _reader  # noqa: F401
+            import_module(module)
         except ImportError as cause:
-            raise MeshReaderMissing("the package pycollada is not installed") from cause
+            raise MeshReaderMissing(f"the package {package} is not installed") from cause
+    import trimesh
+
     try:
         content = path.read_bytes()
         if not content.strip():
             raise MeshFileError("it is empty")
         loaded = trimesh.load_mesh(str(path), process=False)
-        return loaded.convert_units("meters") if collada else loaded
+        return loaded.convert_units("meters") if ending == "dae" else loaded
     except MeshFileError:
         raise
     except Exception as cause:
         # A broken file makes the readers of the formats fail in ways of their own: index, key, struct, XML.
         detail = "" if isinstance(cause, ImportError) else f" ({_words(cause)})"
-        raise MeshFileError(f"it is no whole {path.suffix[1:].upper()} file{detail}") from cause
+        raise MeshFileError(f"it is no whole {ending.upper()} file{detail}") from cause
 
 
 def _joined(
