@@ -1,12 +1,16 @@
 """Obstacles of a cell: what the file gives, in m and in the world, and all that can be wrong with it."""
 
+import sys
 from math import cos, pi, radians, sin, sqrt
+from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from irlx.cell.errors import CellError
+from irlx.cell.obstacle_names import obstacle_names
+from irlx.cell.obstacle_shape import SIZES as SIZES_OF_SHAPES
 from irlx.solids.placement import Placement
 from irlx.solids.shape import Box, Capsule, Cone, Cylinder, Halfspace, Mesh, Point, Sphere
 from mesh_files import CUBE, TRIANGLES, obj, stl
@@ -257,8 +261,6 @@ def test_all_faults_at_once(faults, koch):
 
 
 def test_without_the_reader_of_meshes(faults, koch, tmp_path, monkeypatch):
-    import sys
-
     (tmp_path / "alone.obj").write_bytes(obj(CUBE, TRIANGLES))
     monkeypatch.setitem(sys.modules, "trimesh", None)
     ((code, key, message),) = faults(koch + obstacle("b", 'shape = "mesh"\nfile = "alone.obj"'))
@@ -277,3 +279,22 @@ def test_a_turn_by_hand():
     found = outer.of(Placement((sqrt(2.0), 0.0, 3.0)))
     assert found.position == pytest.approx((2.0, 1.0, 3.0))
     assert found.orientation == outer.orientation
+
+
+def test_the_example_of_the_reference(cell, koch, tmp_path):
+    page = (Path(__file__).parents[2] / "docs" / "reference" / "cell.md").read_text(encoding="utf-8")
+    example = page.split("## `[[obstacle]]`")[1].split("```toml\n")[1].split("```")[0]
+    (tmp_path / "parts").mkdir()
+    (tmp_path / "parts" / "jig.stl").write_bytes(stl(CUBE * 300.0, TRIANGLES))
+    found = cell(koch + example)
+    assert found.scene.names == ("ściana_1", "jig", "tray", "fixture")
+    assert [d.code for d in found.warnings] == ["IRL621"]
+    assert obstacle_names(Path(found.file)) == ("ściana_1", "jig", "tray", "fixture")
+
+
+def test_every_shape_is_in_the_reference():
+    page = (Path(__file__).parents[2] / "docs" / "reference" / "cell.md").read_text(encoding="utf-8")
+    table = page.split("| `shape` |")[1].split("\n\n")[0]
+    for shape, needed in SIZES_OF_SHAPES.items():
+        (row,) = [line for line in table.splitlines() if line.startswith(f"| `{shape}` |")]
+        assert all(f"`{key}" in row for key in needed)
