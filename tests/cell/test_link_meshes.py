@@ -1,13 +1,11 @@
 """Mesh files of links: where they are found, and what is said where they are not."""
 
-import importlib.util
-
 import pytest
 
-from irlx.cell import link_meshes
 from irlx.cell.errors import CellError
 from irlx.cell.link_meshes import resolved_solids
 from irlx.cell.robot_data import robot_data_folder
+from irlx.solids import mesh_file
 from irlx.solids.hull import hull_of
 from irlx.solids.mesh_file import read_mesh
 from irlx.solids.shape import Mesh
@@ -125,9 +123,7 @@ def test_an_open_surface_of_a_link_has_a_hull(load, tmp_path):
 def test_without_the_readers(load, tmp_path, monkeypatch, module, package, ending):
     mesh_at(tmp_path, f"ws/my_arm/urdf/part.{ending}", dae(CUBE, TRIANGLES))
     found = load(f"part.{ending}")
-    monkeypatch.setattr(
-        link_meshes, "find_spec", lambda name: None if name == module else importlib.util.find_spec(name)
-    )
+    monkeypatch.setattr(mesh_file, "_is_installed", lambda name: name != module)
     ((code, _, message),) = faults_of(found)
     assert code == "IRL641"
     assert message.endswith(f'the package {package} is not installed: pip install "irlx[meshes]"')
@@ -135,15 +131,17 @@ def test_without_the_readers(load, tmp_path, monkeypatch, module, package, endin
 
 @needs_robot_data
 def test_a_robot_by_name_runs_without_the_reader_of_its_meshes(cell, monkeypatch):
-    monkeypatch.setattr(link_meshes, "find_spec", lambda name: None)
-    found = cell('[robot]\nmodel = "panda"\n')
+    monkeypatch.setattr(mesh_file, "_is_installed", lambda name: False)
+    found = cell('[robot]\nmodel = "baxter_left"\n')
     assert found.scene.links is None
-    assert [d.code for d in found.warnings] == ["IRL645"]
+    assert [d.code for d in found.warnings] == ["IRL645", "IRL621"]
     assert 'pip install "irlx[meshes]"' in found.warnings[0].message
-    asked = '[robot]\nmodel = "panda"\n[robot.self_collision]\nmargin = 8\n'
     with pytest.raises(CellError, match="IRL641"):
-        cell(asked)
-    assert cell('[robot]\nmodel = "panda"\n[robot.self_collision]\nactive = false\n').warnings == ()
+        cell('[robot]\nmodel = "baxter_left"\n[robot.self_collision]\nmargin = 8\n')
+    silent = cell('[robot]\nmodel = "baxter_left"\n[robot.self_collision]\nactive = false\n')
+    assert [d.code for d in silent.warnings] == ["IRL621"]
+    # The meshes of the Panda are binary STL files.
+    assert cell('[robot]\nmodel = "panda"\n').scene.links is not None
 
 
 @needs_robot_data

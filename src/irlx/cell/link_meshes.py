@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote, urlparse
@@ -17,7 +16,7 @@ from irlx.cell.obstacle_shape import INSTALL_MESHES
 from irlx.diagnostics import Diagnostic, Place, report
 from irlx.diagnostics.near_files import near_files
 from irlx.robot.description import RobotDescription
-from irlx.solids.mesh_file import READERS, MeshFileError, read_mesh
+from irlx.solids.mesh_file import MeshFileError, missing_package, read_mesh
 from irlx.solids.shape import Mesh, Solid
 
 _PACKAGE = "package://"
@@ -59,29 +58,22 @@ def resolved_solids(robot: RobotDescription, model: str, cell_file: str) -> Mapp
 def mesh_faults(robot: RobotDescription, model: str, cell_file: str) -> list[Diagnostic]:
     """Mesh files of a robot's links that are not there (IRL639), or lack their reader (IRL641).
 
-    Each file and each reader is told once; no file is opened.
+    Each file and each reader is told once; no mesh is read.
     """
     place = Place(cell_file, key="robot.model")
     folder = urdf_folder(model, Path(cell_file).parent)
     faults: dict[str, Diagnostic] = {}
     for link, mesh in _meshes(robot):
-        missing = _missing_reader(mesh)
         data: dict[str, Any] = {"key": f"link '{link}'", "file": mesh.file}
         if not (Path(mesh.file).is_absolute() and is_file(Path(mesh.file))):
             first = next(_candidates(mesh.file, folder))
             higher = ", and from the folders above" if mesh.file.startswith(_PACKAGE) else ""
             data |= {"tried": f"{first}{higher}", "near": near_files(first)}
             faults.setdefault(mesh.file, report("IRL639", place, **data))
-        elif missing:
+        elif missing := missing_package(mesh):
             data |= {"cause": f"the package {missing} is not installed", "command": INSTALL_MESHES}
             faults.setdefault(missing, report("IRL641", place, **data))
     return list(faults.values())
-
-
-def _missing_reader(mesh: Mesh) -> str:
-    """The package that reads a mesh file and is not installed, or ''."""
-    needed = READERS.get(Path(mesh.file).suffix[1:].lower(), {})
-    return next((package for module, package in needed.items() if find_spec(module) is None), "")
 
 
 def _all_solids(robot: RobotDescription) -> Iterator[Solid]:
