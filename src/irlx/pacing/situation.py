@@ -21,6 +21,7 @@ from irlx.pacing.slowdown.model import Model
 from irlx.robot.description import RobotDescription
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
+from irlx.scene.scene import Scene
 from irlx.transform.qp.proxqp import ProxQpSolver
 from irlx.transform.tick import TickSolver
 
@@ -33,7 +34,7 @@ class PacingSetup:
 
     A move may take `max_slow` times as long as programmed, and a tick; `inputs` are what the world says;
     `resolution` tells how finely motions are worked out; motions are planned with `planned_share`
-    of each speed and acceleration limit.
+    of each speed and acceleration limit; `scene` is what stands around.
     """
 
     kinematics: Kinematics
@@ -46,6 +47,7 @@ class PacingSetup:
     inputs: Inputs = field(default_factory=Inputs)
     resolution: Resolution = EVERY_TICK
     planned_share: float = 1.0
+    scene: Scene = field(default_factory=Scene)
 
 
 @dataclass(frozen=True)
