@@ -10,7 +10,7 @@ from irlx.diagnostics import Diagnostic, IrlxError, Place, Related, SourceText, 
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.language import tree
 from irlx.language.builtins import FUNCTIONS, SYSTEM_VARIABLES, TYPES, is_port_name
-from irlx.language.obstacles import names_of_cell
+from irlx.language.obstacles import own_nodes
 from irlx.language.parser import Parse, parse
 from irlx.language.scope import Scope
 from irlx.language.symbols import declared_symbols
@@ -148,16 +148,13 @@ class _ValueCheck:
         self.findings: list[Diagnostic] = []
 
     def uses(self, root: tree.Node) -> None:
-        of_cell: set[int] = set()
-        for node in tree.walk(root):
-            if isinstance(node, tree.FunctionCall):
-                of_cell |= names_of_cell(node)
+        for node in own_nodes(root):
             match node:
                 case tree.NamedType(name=name):
                     self._type(name)
                 case tree.RecordType():
                     self._fields(node)
-                case tree.Designator(base=name) if id(node) not in of_cell:
+                case tree.Designator(base=name):
                     self._name(name)
                 case tree.FunctionCall(name=name):
                     self._function(name)

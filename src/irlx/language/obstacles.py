@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 
 from irlx.diagnostics import Diagnostic, Place, report
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.language import tree
 
-__all__ = ["OBSTACLE_NAME", "names_of_cell", "obstacle_name", "unknown_obstacle"]
+__all__ = ["OBSTACLE_NAME", "names_of_cell", "obstacle_name", "own_nodes", "unknown_obstacle"]
 
 OBSTACLE_NAME = "the name of an obstacle or group of the cell"
 """What messages call an argument that must be one."""
@@ -23,6 +23,17 @@ def names_of_cell(call: tree.FunctionCall) -> set[int]:
         return set()
     argument = call.arguments[1]
     return set() if obstacle_name(argument) is None else {id(argument)}
+
+
+def own_nodes(*roots: tree.Node) -> Iterator[tree.Node]:
+    """All nodes as `tree.walk` gives them, but for arguments that name an obstacle."""
+    of_cell: set[int] = set()
+    for node in tree.walk(*roots):
+        if id(node) in of_cell:
+            continue
+        if isinstance(node, tree.FunctionCall):
+            of_cell |= names_of_cell(node)
+        yield node
 
 
 def obstacle_name(argument: tree.Argument) -> tree.Name | None:

@@ -42,6 +42,7 @@ from irlx.pacing.clearance_answers import Clearances, avoiding_posture, pairs_of
 from irlx.pacing.executed import Executed
 from irlx.pacing.inputs import answer_of_inputs
 from irlx.pacing.joint_moves import move_joints
+from irlx.pacing.kept_clear import kept_clear
 from irlx.pacing.motion import Motion
 from irlx.pacing.notes import Notes
 from irlx.pacing.options import LimitsInForce, Options, SwitchBlock
@@ -76,7 +77,8 @@ class Pacer:
         self.warnings: list[Diagnostic] = []
         self.notes = Notes(self.warnings)
         self._last_way = (0.0, 0.0)
-        self._clearances = Clearances(setup.kinematics, setup.scene)
+        self._distances = Clearances(setup.kinematics, setup.scene)
+        self._clearance = kept_clear(setup.kinematics, setup.scene, self.options)
 
     def answer(self, question: MachineQuestion) -> tuple[float, ...]:
         """Answer to a question of the interpreter, all blocks before it executed.
@@ -93,7 +95,7 @@ class Pacer:
             return answer_of_posture(question, self.setup.kinematics)
         if isinstance(question, AskClearance):
             time = self.tick * self.setup.dt
-            return self._clearances.answer(question, time, self.locate(question.origin))
+            return self._distances.answer(question, time, self.locate(question.origin))
         if isinstance(question, AskAvoidingPosture):
             return avoiding_posture(question, self._situation)
         if isinstance(question, AskLastMove):
@@ -118,6 +120,7 @@ class Pacer:
             self.locate,
             self.warnings,
             self.notes,
+            self._clearance,
         )
 
     @property
@@ -196,6 +199,8 @@ class Pacer:
             self._solver = TickSolver(self._setup.kinematics, self.qp)
         if isinstance(block, SwitchBlock):
             self.options = self.options.after(block, self.q)
+        if isinstance(block, ToolBlock | ObstacleBlock):
+            self._clearance = kept_clear(self._setup.kinematics, self._setup.scene, self.options)
         return None
 
     def _motion(self, moves: list[MoveBlock]) -> Motion:

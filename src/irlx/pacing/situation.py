@@ -22,6 +22,7 @@ from irlx.robot.description import RobotDescription
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
 from irlx.scene.scene import Scene
+from irlx.transform.clearance import Clearance
 from irlx.transform.qp.proxqp import ProxQpSolver
 from irlx.transform.tick import TickSolver
 
@@ -54,7 +55,8 @@ class PacingSetup:
 class Situation:
     """The robot at rest in posture `q` (n,) at a tick, the options in force, and what solves its ticks.
 
-    `warnings` and `notes` collect what is found on the way, also before an error.
+    `warnings` and `notes` collect what is found on the way, also before an error; `clearance` is what is kept
+    clear.
     """
 
     setup: PacingSetup
@@ -66,6 +68,7 @@ class Situation:
     locate: Callable[[Origin], Place]
     warnings: list[Diagnostic]
     notes: Notes
+    clearance: Clearance | None = None
 
     @property
     def kinematics(self) -> Kinematics:
@@ -99,4 +102,5 @@ class Situation:
 
     def model(self, in_force: LimitsInForce) -> Model:
         """What planning needs to know of the robot."""
-        return Model(self.kinematics, in_force.limits, self.setup.weights, self.free)
+        setup = self.setup
+        return Model(self.kinematics, in_force.limits, setup.weights, self.free, self.clearance)
