@@ -77,7 +77,11 @@ def walk(
         target = solver.kinematics.target(demand.rotation, demand.position)
         keeping = clearance.tick(q, limiter.dt) if clearance is not None else None
         problem = TickProblem(target, q, bounds, criterion_of(demand), free, keeping)
-        solution = solver.solve(problem, seeds.next(), thorough)
+        seed = seeds.next()
+        solution = solver.solve(problem, seed, thorough)
+        if clearance is not None and keeping is None and solution.solved and clearance.nears(solution.q):
+            problem = problem._replace(clearance=clearance.watched_tick(q, limiter.dt))
+            solution = solver.solve(problem, seed, thorough)
         iterations += solution.iterations
         if not solution.solved:
             halt = Halt(demand, bounds, solution)

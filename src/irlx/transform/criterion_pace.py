@@ -102,6 +102,6 @@ def _along_path(problem: StepProblem, step: Step) -> Array | None:
             problem.upper[others],
         )
         d[others] = path_step(rest)
-        return d
+        return np.asarray(d)
     except np.linalg.LinAlgError:
         return None

@@ -35,10 +35,13 @@ class Combined(Criterion):
 
     def begun(self, q: Array) -> Criterion:
         """The same with b and B of a posture."""
+        terms = [entry for entry in self._terms if entry.term.acts(q)]
+        if not terms:
+            return self._base.begun(q)
         linear = np.zeros(q.size)
-        share = prod(entry.term.posture_share(q) for entry in self._terms)
+        share = prod(entry.term.posture_share(q) for entry in terms)
         hessian = share * self._base.hessian()
-        for entry in self._terms:
+        for entry in terms:
             linear = linear + entry.weight * entry.term.linear(q, self._elapsed)
             added = entry.term.quadratic(q)
             if added is not None:

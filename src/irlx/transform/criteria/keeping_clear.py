@@ -47,6 +47,10 @@ class KeepingClear(Term):
         self._q: Array | None = None
         self._found: tuple[Array, Array, float] | None = None
 
+    def acts(self, q: Array) -> bool:
+        """Whether an obstacle is near."""
+        return not self._distances.far(q) and self._at(q)[2] > 0.0
+
     def posture_share(self, q: Array) -> float:
         """1 far from all obstacles, a_conf near one."""
         return 1.0 - (1.0 - POSTURE_WEIGHT) * self._at(q)[2]
