@@ -35,6 +35,7 @@ Array = NDArray[np.float64]
 _AT_BOUND = 1e-6
 _NOISE = 1e-9
 _PLANNED_AT = 3e-4
+_HARDLY_CLEAR = 1e-3
 _LIMIT_NAMES = {
     BoundSource.POSITION: "position",
     BoundSource.SPEED: "speed",
@@ -96,8 +97,8 @@ def explain_failure(
 ) -> Diagnostic:
     """Diagnostic of a motion that no clock leads through.
 
-    IRL560: what would come too near; IRL520 and IRL521: a place that no posture within the position limits reaches; IRL524: the clock
-    would stand still for a bound; IRL523: rows that pass a bound however slow.
+    IRL560: what would come too near; IRL520 and IRL521: a place that no posture within the position limits
+    reaches; IRL524: the clock would stand still for a bound; IRL523: rows that pass a bound however slow.
     """
     refusal, path = failure.refusal, plan.path
     tick = first_tick + int(
@@ -130,9 +131,12 @@ def _too_near(refusal: Refusal, around: Surroundings) -> TooNear | None:
     if refusal.near is not None:
         return refusal.near
     solution = refusal.solution
-    if solution is None or solution.status is not TickStatus.TOO_NEAR or around.clearance is None:
+    if solution is None or around.clearance is None:
         return None
-    return around.clearance.nearest(solution.q, solution.q if around.start is None else around.start)
+    found = around.clearance.nearest(solution.q, solution.q if around.start is None else around.start)
+    if found is None or solution.status is TickStatus.TOO_NEAR:
+        return found
+    return found if found.distance <= found.floor + _HARDLY_CLEAR else None
 
 
 def _explain_standing(
