@@ -98,7 +98,14 @@ def _motion(
     q = motion.postures(dt, count)
     _check_rows(situation, q, in_force.limits, dt * motion.ticks / count, place)
     check_conditions(q, situation.kinematics, place)
-    check_rows(situation.clearance, q, situation.q, situation.tick + 1, "MOVE PTP", place)
+    check_rows(
+        situation.clearance,
+        q,
+        situation.q,
+        (situation.tick + 1, dt * motion.ticks / count),
+        "MOVE PTP",
+        place,
+    )
     s = programmed_clock(motion.law, motion.ticks, dt, count).s
     rows = replace(_rows(situation, moves[0], q, s), span=motion.ticks + 1)
     handed: list[MotionRows | None] = [rows]

@@ -56,8 +56,9 @@ from irlx.pacing.rows import MotionRows
 from irlx.pacing.situation import PacingSetup, Situation
 from irlx.pacing.snap import snapped
 from irlx.pacing.switches import check_freeze, check_inside, check_limit
-from irlx.pacing.too_near import standing
+from irlx.pacing.too_near import check_rows, passed_by, standing
 from irlx.pacing.waiting import waited
+from irlx.transform.clearance import Clearance
 from irlx.transform.qp.proxqp import ProxQpSolver
 from irlx.transform.tick import TickSolver
 
@@ -111,6 +112,11 @@ class Pacer:
         return tuple(posture_of_pose(target, near, situation, situation.in_force(), place).tolist())
 
     @property
+    def _clear_from_now(self) -> Clearance | None:
+        """What is kept clear in a motion that begins now."""
+        return None if self._clearance is None else self._clearance.beginning(self.tick * self.setup.dt)
+
+    @property
     def _situation(self) -> Situation:
         """What the next motion finds."""
         return Situation(
@@ -123,7 +129,7 @@ class Pacer:
             self.locate,
             self.warnings,
             self.notes,
-            self._clearance,
+            self._clear_from_now,
         )
 
     @property
@@ -206,7 +212,7 @@ class Pacer:
             self._clearance = kept_clear(self._setup.kinematics, self._setup.scene, self.options)
         if isinstance(block, ObstacleBlock) and block.active:
             names = [obstacle.name for obstacle in self._setup.scene.members(block.name)]
-            self.warnings += standing(self._clearance, self.q, names, place)
+            self.warnings += standing(self._clear_from_now, self.q, names, place)
         return None
 
     def _motion(self, moves: list[MoveBlock]) -> Motion:
@@ -228,7 +234,7 @@ class Pacer:
         """Before the first motion: whether the robot stands clear of itself."""
         if not self._links_checked:
             self._links_checked = True
-            self.warnings += standing(self._clearance, self.q, self._robot.solids, place)
+            self.warnings += standing(self._clear_from_now, self.q, self._robot.solids, place)
 
     def _move(self, rows: MotionRows | None, motion: Motion, begins: bool = True) -> MotionRows | None:
         """`_moved` for a move, or a further part of one that had to stop on its way."""
@@ -241,13 +247,21 @@ class Pacer:
         """The rows of a motion with its limits, the robot now standing at their end."""
         if rows is None:
             return None
+        dt = self.setup.dt * rows.ticks / len(rows)
+        clear = self._clear_from_now
+        nearest = nearest_rows(clear, rows.q, dt)
+        place = self.locate(rows.block.origin)
+        self.warnings += passed_by(clear, rows.q, (rows.first_tick, dt), place)
         self.q = rows.q[-1]
         self.tick += rows.ticks
-        return replace(rows, limits=in_force.limits, nearest=nearest_rows(self._clearance, rows.q))
+        return replace(rows, limits=in_force.limits, nearest=nearest)
 
     def _wait(self, block: WaitBlock | PauseBlock, place: Place) -> MotionRows | None:
         setup = self.setup
         rows = waited(block, self.q, setup.dt, self.tick + 1, setup.kinematics, place, setup.resolution)
+        if rows is not None and setup.scene.moves:
+            ticking = self.tick + 1, setup.dt * rows.ticks / len(rows)
+            check_rows(self._clear_from_now, rows.q, self.q, ticking, "while it waits something", place)
         return self._moved(rows, self._situation.in_force())
 
     def _reconfigure(self, block: ReconfigureBlock) -> MotionRows | None:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from irlx.robot.kinematics import Kinematics
 from irlx.scene.collision_shape import bounding_radius, collision_shape, pose_of
 from irlx.scene.levers import Levers
-from irlx.scene.obstacle import Obstacle
+from irlx.scene.trajectory import Trajectory
 from irlx.scene.watched_pair import WatchedPair
 from irlx.solids.shape import Solid
 
@@ -64,7 +64,8 @@ class Distances:
         self._numbers: dict[tuple[str, bool, int], int] = {}
         self._bodies: list[int] = []
         self._radii: list[float] = []
-        self._moving: list[tuple[int, pin.SE3, Obstacle]] = []
+        self._moving: list[tuple[int, pin.SE3, Trajectory]] = []
+        self._speeds: list[float] = []
         self._first = np.array([self._add_of_link(p.link, p.solid) for p in pairs], dtype=np.intp)
         self._second = np.array([self._add_other(p) for p in pairs], dtype=np.intp)
         for first, second in zip(self._first, self._second, strict=True):
@@ -80,24 +81,39 @@ class Distances:
         self._slack = -np.inf
         self._longest = self._levers.longest
         self._here: Array | None = None
-        self._time = 0.0
+        self._time = self._looked_at = 0.0
+        self._rates = np.array([self._speeds[k] for k in self._second])
+        self._fastest = float(np.max(self._rates, initial=0.0))
 
     def at_time(self, time: float) -> None:
         """Put the obstacles that move where they are at a `time` (s) of the run."""
         if not self._moving or time == self._time:
             return
-        raise NotImplementedError
+        self._time, self._here = time, None
+        for number, within, trajectory in self._moving:
+            self._model.geometryObjects[number].placement = trajectory.pose(time) * within
+
+    @property
+    def moves(self) -> bool:
+        """Whether any obstacle moves."""
+        return bool(self._moving)
 
     def far(self, q: Array) -> bool:
         """Whether it is certain without a look that no pair is within its influence at posture q (n,)."""
         if self._slack <= 0.0 or self._longest is None:
             return False
-        return bool(self._longest.dot(np.abs(q - self._last)) < self._slack)
+        moved = self._longest.dot(np.abs(q - self._last))
+        if self._moving:
+            moved += self._fastest * abs(self._time - self._looked_at)
+        return bool(moved < self._slack)
 
     def near(self, q: Array, within: Array | None = None) -> Near:
         """Pairs nearer than `within` (K,) m, by default their influence, at posture q (n,)."""
         reach = self.influence if within is None else within
         least = self._least - self._levers.moved(self._last, q)
+        if self._moving:
+            least = least - self._rates * abs(self._time - self._looked_at)
+            self._looked_at = self._time
         asked = np.flatnonzero(least < reach)
         found = self.of(q, asked)
         least[asked] = found.distance
@@ -160,7 +176,15 @@ class Distances:
             return self._add_of_link(pair.other, pair.other_solid)
         within = pose_of(pair.other_solid.placement)
         world = pose_of(pair.obstacle.placement) * within
-        return self._add((pair.other, False, id(pair.other_solid)), 0, world, pair.other_solid)
+        known = len(self._numbers)
+        number = self._add((pair.other, False, id(pair.other_solid)), 0, world, pair.other_solid)
+        if pair.obstacle.trajectory and number == known:
+            trajectory = Trajectory(pair.obstacle)
+            radius = float(np.linalg.norm(within.translation)) + bounding_radius(pair.other_solid.shape)
+            self._speeds[number] = trajectory.fastest(radius)
+            self._model.geometryObjects[number].placement = trajectory.pose(0.0) * within
+            self._moving.append((number, within, trajectory))
+        return number
 
     def _add(self, key: tuple[str, bool, int], joint: int, pose: pin.SE3, solid: Solid) -> int:
         number = self._numbers.get(key)
@@ -170,5 +194,6 @@ class Distances:
             number = int(self._model.addGeometryObject(pin.GeometryObject(name, joint, pose, shape)))
             self._numbers[key] = number
             self._bodies.append(joint)
+            self._speeds.append(0.0)
             self._radii.append(float(np.linalg.norm(pose.translation)) + bounding_radius(solid.shape))
         return number

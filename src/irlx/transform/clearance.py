@@ -56,39 +56,63 @@ class TooNear:
 
 
 class Clearance:
-    """Pairs to be kept clear of each other."""
+    """Pairs to be kept clear of each other in a motion that begins at the time `begin` (s) of the run."""
 
-    def __init__(self, distances: Distances) -> None:
+    def __init__(self, distances: Distances, begin: float = 0.0) -> None:
         self.distances = distances
+        self.begin = begin
 
-    def tick(self, q: Array, dt: float, reserve: float = RESERVE) -> TickClearance | None:
-        """The floors of a tick of dt s that begins at posture q (n,); None where everything is far.
+    def beginning(self, time: float) -> Clearance:
+        """The same for a motion that begins at a `time` (s)."""
+        return Clearance(self.distances, time)
 
-        Where a step from there comes near something, `nears` tells.
+    def after(self, elapsed: float) -> Distances:
+        """The distances, obstacles placed where they are `elapsed` s after the begin of the motion."""
+        self.distances.at_time(self.begin + elapsed)
+        return self.distances
+
+    def tick(
+        self, q: Array, dt: float, elapsed: float = 0.0, reserve: float = RESERVE
+    ) -> TickClearance | None:
+        """The floors of a tick of dt s that begins at posture q (n,), `elapsed` s after the motion has begun.
+
+        None where everything is far; where a step from there comes near something, `nears` tells.
         """
-        return None if self.distances.far(q) else TickClearance(self.distances, q, dt, reserve)
+        if self.after(elapsed).far(q):
+            return None
+        return TickClearance(self.distances, q, dt, reserve, self.begin + elapsed)
 
-    def watched_tick(self, q: Array, dt: float) -> TickClearance:
+    def watched_tick(self, q: Array, dt: float, elapsed: float) -> TickClearance:
         """The same where something may come near, however far it is at the start of the tick."""
-        return TickClearance(self.distances, q, dt, RESERVE)
+        return TickClearance(self.distances, q, dt, RESERVE, self.begin + elapsed)
 
-    def nears(self, q: Array) -> bool:
+    def nears(self, q: Array, elapsed: float) -> bool:
         """Whether a tick that began without floors must not end at q (n,) unseen."""
-        return not self.distances.far(q)
+        return not self.after(elapsed).far(q)
 
-    def short(self, q: Array, start: Array) -> TooNear | None:
+    def short(self, q: Array, start: Array, elapsed: float = 0.0) -> TooNear | None:
         """The pair of posture q (n,) that is nearer than it may be in a motion from `start` (n,); None: none.
 
         What was inside its margin at the start may stay as near as it was.
         """
+        floors = self.floors(np.arange(len(self.distances.pairs)), start) if self.distances.moves else None
+        self.after(elapsed)
         near = self._within(q)
-        found = near.distance < self.floors(near.pairs, start) - ALLOWANCE
-        return self.nearest(q, start) if np.any(found) else None
+        least = self.floors(near.pairs, start) if floors is None else floors[near.pairs]
+        room = near.distance - least
+        if not np.any(room < -ALLOWANCE):
+            return None
+        k = int(np.argmin(room))
+        return TooNear(int(near.pairs[k]), float(near.distance[k]), float(least[k]))
 
-    def first_short(self, q: Array, start: Array) -> tuple[int, TooNear] | None:
-        """The first of postures q (N, n) at which `short` finds a pair, and that pair, or None."""
-        for row, posture in enumerate(q):
-            found = None if self.distances.far(posture) else self.short(posture, start)
+    def first_short(self, q: Array, start: Array, elapsed: Array | None = None) -> tuple[int, TooNear] | None:
+        """The first of postures q (N, n), at times `elapsed` (N,), at which `short` finds a pair.
+
+        With that pair; None where there is none.
+        """
+        times = np.zeros(len(q)) if elapsed is None else elapsed
+        for row, (posture, time) in enumerate(zip(q, times.tolist(), strict=True)):
+            found = None if self.after(time).far(posture) else self.short(posture, start, time)
             if found is not None:
                 return row, found
         return None
@@ -112,14 +136,17 @@ class Clearance:
         What is nearer at the start may stay as near as it is.
         """
         least = self.distances.margin[pairs] + reserve
+        self.after(0.0)
         return np.asarray(np.minimum(least, self.distances.of(start, pairs).distance))
 
 
 class TickClearance:
     """Floors (P,) of the pairs of one tick, and the rows that they are at an iterate."""
 
-    def __init__(self, distances: Distances, q: Array, dt: float, reserve: float) -> None:
+    def __init__(self, distances: Distances, q: Array, dt: float, reserve: float, time: float) -> None:
         self._distances = distances
+        self._end = time + dt
+        distances.at_time(time)
         self._q = q
         self._least = distances.margin + reserve
         self.near = distances.near(q)
@@ -145,6 +172,7 @@ class TickClearance:
         Pairs that were far at the start of the tick count with their margins.
         """
         distances, least = self._distances, self._least
+        distances.at_time(self._end)
         there = distances.near(self._q + whole, np.maximum(distances.influence, least))
         floor = least.copy()
         floor[self.near.pairs] = self.floors
@@ -164,6 +192,7 @@ class TickClearance:
 
     def _look(self, whole: Array) -> None:
         distances = self._distances
+        distances.at_time(self._end)
         q = self._q + whole
         self.near = distances.of(q, self.near.pairs)
         points = distances.jacobians(q, self.near)

@@ -24,5 +24,10 @@ CLEARANCE = (
         "{pair} are {distance} apart where the robot stands, inside the margin of {margin}",
         "moves keep them from coming nearer and widen the gap where they can",
     ),
+    warning(
+        "IRL564",
+        "while the robot stood, {pair} came as near as {distance} to each other (tick {tick}), {floor} are kept",
+        "at rest nothing is avoided: let the move that leads out of its way last until it has passed",
+    ),
 )
 """Codes of obstacles and links that come too near."""
