@@ -37,8 +37,9 @@ from irlx.blocks import (
 )
 from irlx.diagnostics import Diagnostic, Place
 from irlx.pacing.answers import answer_of_bounds, answer_of_last_move, answer_of_posture, way_of
+from irlx.pacing.avoiding_posture import avoiding_posture
 from irlx.pacing.beyond import posture_beyond, ticks_beyond
-from irlx.pacing.clearance_answers import Clearances, avoiding_posture, pairs_of
+from irlx.pacing.clearance_answers import Clearances, pairs_of
 from irlx.pacing.executed import Executed
 from irlx.pacing.inputs import answer_of_inputs
 from irlx.pacing.joint_moves import move_joints

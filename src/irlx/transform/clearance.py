@@ -105,6 +105,15 @@ class Clearance:
         k = int(np.argmin(room))
         return TooNear(int(near.pairs[k]), float(near.distance[k]), float(least[k]))
 
+    def inside_margin(self, q: Array) -> TooNear | None:
+        """The pair of posture q (n,) that is deepest inside its margin; None where none is."""
+        near = self.distances.near(q, self.distances.margin)
+        if not len(near.pairs):
+            return None
+        margin = self.distances.margin[near.pairs]
+        k = int(np.argmin(near.distance - margin))
+        return TooNear(int(near.pairs[k]), float(near.distance[k]), float(margin[k]))
+
     def first_short(self, q: Array, start: Array, elapsed: Array | None = None) -> tuple[int, TooNear] | None:
         """The first of postures q (N, n), at times `elapsed` (N,), at which `short` finds a pair.
 

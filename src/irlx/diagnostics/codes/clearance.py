@@ -26,8 +26,13 @@ CLEARANCE = (
     ),
     warning(
         "IRL564",
-        "while the robot stood, {pair} came as near as {distance} to each other (tick {tick}), {floor} are kept",
-        "at rest nothing is avoided: let the move that leads out of its way last until it has passed",
+        "while the robot stood, {pair} came within {distance} (tick {tick}), {floor} are kept",
+        "at rest nothing is avoided: let the move out of its way last until it has passed",
+    ),
+    warning(
+        "IRL565",
+        "the posture that POSTURE finds is not clear of {name}: {pair} are {distance} apart, not {floor}",
+        "another posture of the pose may be: lead the robot nearer to it before, or ask for another pose",
     ),
 )
 """Codes of obstacles and links that come too near."""
