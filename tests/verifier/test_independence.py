@@ -54,5 +54,5 @@ def test_what_is_shared_holds_no_motion():
         file = file / "__init__.py" if file.is_dir() else file.with_suffix(".py")
         waiting |= {n for n in imports(file) if n.split(".")[0] == "irlx" and n != "irlx._version"} - seen
     parts = {name.split(".")[1] for name in seen}
-    assert parts <= {"blocks", "diagnostics", "promises", "robot", "streams"}
+    assert parts <= {"blocks", "diagnostics", "promises", "robot", "solids", "streams"}
     assert not any(name.startswith("irlx.robot.kinematics") for name in seen)
