@@ -1,0 +1,165 @@
+"""How far a robot is from what it keeps clear of, by coal through Pinocchio."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+
+from irlx.robot.kinematics import Kinematics
+from irlx.scene.collision_shape import bounding_radius, collision_shape, pose_of
+from irlx.scene.levers import Levers
+from irlx.scene.obstacle import Obstacle
+from irlx.scene.watched_pair import WatchedPair
+from irlx.solids.shape import Solid
+
+Array = NDArray[np.float64]
+Numbers = NDArray[np.intp]
+
+_TOLERANCE = 1e-9
+"""What the search for nearest points may leave (m)."""
+
+_GUESS = np.array([1.0, 0.0, 0.0])
+_FIRST_VERTICES = np.zeros(2, dtype=np.int32)
+_WORLD = pin.ReferenceFrame.WORLD
+
+
+@dataclass(frozen=True)
+class Near:
+    """Pairs that are near in a posture, P of them, by their numbers `pairs` (P,).
+
+    `distance` (P,) m, negative where they overlap; `away` (P, 3) unit vectors in the world along which the
+    link leaves the other one; the nearest points `on_link` and `on_other` (P, 3) m in the world.
+    """
+
+    pairs: Numbers
+    distance: Array
+    away: Array
+    on_link: Array
+    on_other: Array
+
+    def chosen(self, which: NDArray[np.bool_]) -> Near:
+        """Those of the pairs (P,) that are True."""
+        points = self.on_link[which], self.on_other[which]
+        return Near(self.pairs[which], self.distance[which], self.away[which], *points)
+
+
+class Distances:
+    """Distances between watched pairs of solids.
+
+    A pair is looked at again only where the joints have moved far enough since it was looked at last
+    (`Levers`); what is found does not depend on that. Not safe for use by several threads at once.
+    """
+
+    def __init__(self, kinematics: Kinematics, pairs: Sequence[WatchedPair]) -> None:
+        self.kinematics = kinematics
+        self.pairs = tuple(pairs)
+        self.margin = np.array([pair.margin for pair in pairs])
+        self.influence = np.array([pair.influence for pair in pairs])
+        self._model = pin.GeometryModel()
+        self._numbers: dict[tuple[str, bool, int], int] = {}
+        self._bodies: list[int] = []
+        self._radii: list[float] = []
+        self._moving: list[tuple[int, pin.SE3, Obstacle]] = []
+        self._first = np.array([self._add_of_link(p.link, p.solid) for p in pairs], dtype=np.intp)
+        self._second = np.array([self._add_other(p) for p in pairs], dtype=np.intp)
+        for first, second in zip(self._first, self._second, strict=True):
+            self._model.addCollisionPair(pin.CollisionPair(int(first), int(second)))
+        self._geometry = pin.GeometryData(self._model)
+        self._requests = list(self._geometry.distanceRequests)
+        for request in self._requests:
+            request.gjk_tolerance = request.epa_tolerance = _TOLERANCE
+        self._data = kinematics.model.createData()
+        self._levers = Levers.of(kinematics, self._bodies, self._radii, self._first, self._second)
+        self._last = np.zeros(kinematics.joints)
+        self._least = np.full(len(pairs), -np.inf)
+        self._here: Array | None = None
+        self._time = 0.0
+
+    def at_time(self, time: float) -> None:
+        """Put the obstacles that move where they are at a `time` (s) of the run."""
+        if not self._moving or time == self._time:
+            return
+        raise NotImplementedError
+
+    def near(self, q: Array, within: Array | None = None) -> Near:
+        """Pairs nearer than `within` (K,) m, by default their influence, at posture q (n,)."""
+        reach = self.influence if within is None else within
+        least = self._least - self._levers.moved(self._last, q)
+        asked = np.flatnonzero(least < reach)
+        found = self.of(q, asked)
+        least[asked] = found.distance
+        self._least, self._last = least, q.copy()
+        close = found.distance < reach[asked]
+        return found if np.all(close) else found.chosen(close)
+
+    def of(self, q: Array, pairs: Numbers) -> Near:
+        """These pairs at posture q (n,), however far."""
+        count = len(pairs)
+        distance, away = np.empty(count), np.empty((count, 3))
+        on_link, on_other = np.empty((count, 3)), np.empty((count, 3))
+        if count:
+            self._place(q)
+        for k, pair in enumerate(pairs.tolist()):
+            # Pinocchio begins where the last search ended: bits would depend on what was asked before.
+            request = self._requests[pair]
+            request.cached_gjk_guess, request.cached_support_func_guess = _GUESS, _FIRST_VERTICES
+            result = pin.computeDistance(self._model, self._geometry, pair)
+            distance[k], away[k] = result.min_distance, -result.normal
+            on_link[k], on_other[k] = result.getNearestPoint1(), result.getNearestPoint2()
+        return Near(pairs, distance, away, on_link, on_other)
+
+    def jacobians(self, q: Array, near: Near) -> Array:
+        """d(point on link - point on other)/dq (P, 3, n), both points fixed on their bodies, at posture q."""
+        found = np.empty((len(near.pairs), 3, q.size))
+        if len(near.pairs):
+            self._place(q)
+        for k, pair in enumerate(near.pairs.tolist()):
+            found[k] = self._point_jacobian(self._bodies[self._first[pair]], near.on_link[k])
+            second = self._bodies[self._second[pair]]
+            if second:
+                found[k] -= self._point_jacobian(second, near.on_other[k])
+        return found
+
+    def _point_jacobian(self, joint: int, point: Array) -> Array:
+        if joint == 0:
+            return np.zeros((3, self.kinematics.joints))
+        whole = pin.getJointJacobian(self.kinematics.model, self._data, joint, _WORLD)
+        x, y, z = point.tolist()
+        turned = np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
+        return np.asarray(whole[:3] + turned @ whole[3:])
+
+    def _place(self, q: Array) -> None:
+        if self._here is not None and np.array_equal(q, self._here):
+            return
+        pin.computeJointJacobians(self.kinematics.model, self._data, q)
+        pin.updateGeometryPlacements(self.kinematics.model, self._data, self._model, self._geometry)
+        self._here = q.copy()
+
+    # ---- building
+
+    def _add_of_link(self, link: str, solid: Solid) -> int:
+        joint, frame = self.kinematics.body_of(link)
+        return self._add(("link", True, id(solid)), joint, frame * pose_of(solid.placement), solid)
+
+    def _add_other(self, pair: WatchedPair) -> int:
+        if pair.obstacle is None:
+            return self._add_of_link(pair.other, pair.other_solid)
+        within = pose_of(pair.other_solid.placement)
+        world = pose_of(pair.obstacle.placement) * within
+        return self._add((pair.other, False, id(pair.other_solid)), 0, world, pair.other_solid)
+
+    def _add(self, key: tuple[str, bool, int], joint: int, pose: pin.SE3, solid: Solid) -> int:
+        number = self._numbers.get(key)
+        if number is None:
+            shape: Any = collision_shape(solid.shape)
+            name = f"solid {len(self._numbers)}"
+            number = int(self._model.addGeometryObject(pin.GeometryObject(name, joint, pose, shape)))
+            self._numbers[key] = number
+            self._bodies.append(joint)
+            self._radii.append(float(np.linalg.norm(pose.translation)) + bounding_radius(solid.shape))
+        return number
