@@ -18,8 +18,8 @@ def distances(
     """Brackets of the distances between `first`, at the origin, and `second` at M poses in its frame.
 
     Positions (M, 3) m, rotations (M, 3, 3); `start` (M, 3): directions to begin the search with. Below 0 the
-    bodies overlap: convex ones as deep as the least shift that parts them, a mesh as deep as
-    the worst of its triangles does, and where one is wholly inside the other as deep as their surfaces are apart.
+    bodies overlap: convex ones as deep as the least shift that parts them, a mesh as deep as the worst of its
+    triangles does, and where one is wholly inside the other as deep as their surfaces are apart.
     """
     if isinstance(first, HalfspaceBody):
         down = np.broadcast_to([0.0, 0.0, -1.0], positions.shape)
@@ -39,14 +39,12 @@ def distances(
     return Gaps(found.lower - radii, found.upper - radii, found.direction)
 
 
-def slab(
-    first: Body, second: SolidBody, positions: Floats, rotations: Floats, directions: Floats
-) -> Floats:
+def slab(first: Body, second: SolidBody, positions: Floats, rotations: Floats, directions: Floats) -> Floats:
     """Widths (M,) of the empty slabs between both across unit `directions` (M, 3): at most the distances."""
     if isinstance(first, HalfspaceBody):
         return distances(first, second, positions, rotations).lower
     away = np.einsum("mi,mi->m", positions, directions)
-    return away - second.height(backward(rotations, -directions)) - first.height(directions)
+    return np.asarray(away - second.height(backward(rotations, -directions)) - first.height(directions))
 
 
 def _one_inside(

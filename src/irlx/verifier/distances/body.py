@@ -34,11 +34,11 @@ class ConvexBody:
     def height(self, directions: Floats) -> Floats:
         """Greatest coordinate (M,) of the body along unit directions (M, 3), m."""
         points = self.core.support(directions)
-        return np.einsum("mi,mi->m", points, directions) + self.radius
+        return np.asarray(np.einsum("mi,mi->m", points, directions) + self.radius)
 
     def from_points(self, points: Floats) -> Floats:
         """At most the distance (M,) of points (M, 3) from the body."""
-        return self.core.from_points(points) - self.radius
+        return np.asarray(self.core.from_points(points) - self.radius)
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class HalfspaceBody:
 
     def from_points(self, points: Floats) -> Floats:
         """Distance (M,) of points (M, 3) from it, below 0 inside."""
-        return points[:, 2].copy()
+        return np.array(points[:, 2])
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,9 +14,14 @@ _Z = np.array([[0.0, 0.0, 1.0]])
 
 @dataclass(frozen=True, eq=False)
 class BoxCore:
-    """A box about the origin with half edges `half` (3,), m; zeros make it a rectangle, a segment, a point."""
+    """A box about the origin with half edges `half` (3,), m; zeros leave a rectangle, a segment, a point."""
 
     half: Floats
+
+    @property
+    def round(self) -> bool:
+        """Whether it has faces or edges that bend."""
+        return False
 
     @property
     def faces(self) -> Floats:
@@ -30,7 +35,7 @@ class BoxCore:
 
     @property
     def ridges(self) -> Floats:
-        """Axes x, y, z and cosine (K, 4) of the circles of normals of its edges: all directions across each."""
+        """Axes x, y, z and cosine 0 (K, 4) of the circles of normals of its edges: all across each."""
         return np.column_stack([self.edges, np.zeros(len(self.edges))])
 
     @property
@@ -53,6 +58,11 @@ class CylinderCore:
 
     radius: float
     half: float
+
+    @property
+    def round(self) -> bool:
+        """Whether it has faces or edges that bend."""
+        return True
 
     @property
     def faces(self) -> Floats:
@@ -93,6 +103,11 @@ class ConeCore:
 
     radius: float
     half: float
+
+    @property
+    def round(self) -> bool:
+        """Whether it has faces or edges that bend."""
+        return True
 
     @property
     def faces(self) -> Floats:

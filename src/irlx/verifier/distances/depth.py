@@ -14,20 +14,27 @@ _PEAKS = 3
 _SHRINKS = 50
 
 
-def overlap_depth(first: Convex, second: Convex, known: Floats) -> tuple[Floats, Floats]:
+def overlap_depth(
+    first: Convex, second: Convex, known: Floats, thorough: bool = True
+) -> tuple[Floats, Floats]:
     """Widest slab (M,) between M pairs of sets, m, below 0 where they overlap, and its direction (M, 3).
 
     Every direction gives a slab, so none found is wider than the widest. That lies across a face of either or
     two edges, or on a circle of normals (of an edge, of the side of a cylinder or cone), or, between rims,
     where the width is smooth: there it is climbed to from the best of all these, of directions all round, and
-    of those `known` (M, 3).
+    of those `known` (M, 3). Not `thorough`, bodies with round faces may seem deeper than they are.
     """
-    directions = np.concatenate([_candidates(first, second, known), _on_ridges(first, second)], axis=1)
+    directions = _candidates(first, second, known)
+    search = thorough and (first.round or second.round)
+    if search:
+        around = np.broadcast_to(_AROUND, (len(known), *_AROUND.shape))
+        directions = np.concatenate([directions, _on_ridges(first, second), around], axis=1)
     widths = np.stack([_width(first, second, directions[:, i]) for i in range(directions.shape[1])], axis=1)
-    best = np.argsort(-widths, axis=1)[:, :_REFINED]
+    best = np.argsort(-widths, axis=1)[:, : _REFINED if search else 1]
     rows = np.repeat(np.arange(len(best)), best.shape[1])
-    found = directions[rows, best.ravel()]
-    width, found = _widened(first.take(rows), second.take(rows), found, widths[rows, best.ravel()])
+    width, found = widths[rows, best.ravel()], directions[rows, best.ravel()]
+    if search:
+        width, found = _widened(first.take(rows), second.take(rows), found, width)
     width = width.reshape(len(best), -1)
     top = np.argmax(width, axis=1)
     each: Integers = np.arange(len(best))
@@ -48,7 +55,7 @@ def _on_ridges(first: Convex, second: Convex) -> Floats:
 def _widest_on(first: Convex, second: Convex, ridge: Floats) -> Floats:
     """Directions (M, P, 3): the best of samples around a circle (M, 4), each moved in steps that shrink."""
     axis, cosine = ridge[:, :3], ridge[:, 3:]
-    sine = np.sqrt(1.0 - cosine**2) * axis.any(axis=1)[:, None]
+    sine = np.sqrt(1.0 - cosine**2)
     least = np.eye(3)[np.argmin(np.abs(axis), axis=1)]
     across = unit(np.cross(axis, least))
     other = np.cross(axis, across)
@@ -59,7 +66,8 @@ def _widest_on(first: Convex, second: Convex, ridge: Floats) -> Floats:
 
     angles = np.linspace(0.0, 2.0 * np.pi, _SAMPLES, endpoint=False)
     widths = np.stack([_width(first, second, at(np.full(len(axis), angle))) for angle in angles], axis=1)
-    peaks = (widths >= np.roll(widths, 1, axis=1)) & (widths >= np.roll(widths, -1, axis=1))
+    before, behind = np.roll(widths, 1, axis=1), np.roll(widths, -1, axis=1)
+    peaks = (widths >= before) & (widths >= behind)
     order = np.argsort(-np.where(peaks, widths, -np.inf), axis=1)[:, :_PEAKS]
     found = []
     for place in order.T:
@@ -87,12 +95,11 @@ def _candidates(first: Convex, second: Convex, known: Floats) -> Floats:
     edges = np.cross(first.edges[:, :, None], second.edges[:, None])
     lines = np.concatenate([faces, unit(edges.reshape(len(known), -1, 3))], axis=1)
     centres = unit(second.centres - first.centres)[:, None]
-    around = np.broadcast_to(_AROUND, (len(known), *_AROUND.shape))
-    return np.concatenate([lines, -lines, known[:, None], centres, around], axis=1)
+    return np.concatenate([lines, -lines, known[:, None], centres], axis=1)
 
 
 def _widened(first: Convex, second: Convex, directions: Floats, width: Floats) -> tuple[Floats, Floats]:
-    """Climb from directions (M, 3): the slab widens the way its support point tells, in steps halved at need."""
+    """Climb from directions (M, 3): the slab widens away from its support point, in steps halved at need."""
     step = np.ones(len(width))
     for _ in range(_STEPS):
         corner = first.support(directions) - second.support(-directions)

@@ -8,10 +8,10 @@ import numpy as np
 
 from irlx.streams.joint_stream import Floats, Integers
 from irlx.verifier.distances.body import ConvexBody, MeshBody, SolidBody
-from irlx.verifier.distances.placed import Convex, Placed, Resting, Triangles, onward
+from irlx.verifier.distances.placed import Convex, Placed, Resting, Triangles, backward, onward
 from irlx.verifier.distances.separation import Gaps, separation
 
-_MOST_PAIRS = 1_000_000
+_MOST_PAIRS = 400_000
 """Pairs of spheres looked at together; where there would be more, rows are taken in halves."""
 
 
@@ -37,12 +37,17 @@ def nearest_triangles(first: SolidBody, second: SolidBody, positions: Floats, ro
 
 class _Near(NamedTuple):
     """Pairs (K,) that may be nearest: their row, part of the first and of the second body, and a bound from
-    below of their distance; in order of rows, the least bound first."""
+    below of their distance; `levels` of the trees they are nodes of."""
 
     rows: Integers
     ones: Integers
     others: Integers
     least: Floats
+    levels: tuple[int, int]
+
+    def take(self, which: Integers) -> _Near:
+        """Those of the given indices."""
+        return _Near(self.rows[which], self.ones[which], self.others[which], self.least[which], self.levels)
 
 
 class _Pairs:
@@ -51,50 +56,63 @@ class _Pairs:
     def __init__(self, first: SolidBody, second: SolidBody, positions: Floats, rotations: Floats) -> None:
         self._first, self._second = first, second
         self._positions, self._rotations = positions, rotations
-        self._upper = np.full(len(positions), np.inf)
+        self._lasts = _depth(first) - 1, _depth(second) - 1
 
     def candidates(self) -> _Near | None:
         """Pairs of parts whose spheres are as near as any; None where that is too many at once."""
-        rows = np.arange(len(self._positions))
-        ones = others = np.zeros(len(rows), dtype=np.int64)
-        levels = [0, 0]
-        lasts = [_depth(self._first) - 1, _depth(self._second) - 1]
+        front = self._front()
+        self._upper = self._first_guess(front)
         while True:
-            least, most = self._bounds(rows, ones, others, levels)
-            np.minimum.at(self._upper, rows, most)
-            kept = np.flatnonzero(least <= self._upper[rows])
-            rows, ones, others, least = rows[kept], ones[kept], others[kept], least[kept]
-            if levels == lasts:
-                order = np.lexsort((least, rows))
-                return _Near(rows[order], ones[order], others[order], least[order])
-            if len(rows) > _MOST_PAIRS and len(self._positions) > 1:
+            kept = np.flatnonzero(front.least <= self._upper[front.rows])
+            front = front.take(kept)
+            if front.levels == self._lasts:
+                order = np.lexsort((front.least, front.rows))
+                return front.take(order)
+            if len(front.rows) > _MOST_PAIRS and len(self._positions) > 1:
                 return None
-            # The body with the larger spheres is taken apart.
-            sizes = [_radius(self._first, levels[0]), _radius(self._second, levels[1])]
-            side = 0 if levels[1] == lasts[1] or (levels[0] < lasts[0] and sizes[0] >= sizes[1]) else 1
-            body = (self._first, self._second)[side]
-            assert isinstance(body, MeshBody)
-            parent, node = body.tree.below(levels[side], (ones, others)[side])
-            rows = rows[parent]
-            ones, others = (node, others[parent]) if side == 0 else (ones[parent], node)
-            levels[side] += 1
+            front = self._below(front)
 
-    def _bounds(
-        self, rows: Integers, ones: Integers, others: Integers, levels: list[int]
-    ) -> tuple[Floats, Floats]:
-        """Distances of parts in two spheres: at least, at most."""
+    def _first_guess(self, front: _Near) -> Floats:
+        """Distances (M,) of parts that are found by going down to the nearest spheres: at least the least."""
+        while front.levels != self._lasts:
+            front = self._below(front)
+            order = np.lexsort((front.least, front.rows))
+            front = front.take(order[np.flatnonzero(np.diff(front.rows[order], prepend=-1))])
+        return separation(*self._sets(front), thorough=False).upper
+
+    def _front(self) -> _Near:
+        """Every row with both bodies as a whole."""
+        rows: Integers = np.arange(len(self._positions))
+        nodes = np.zeros(len(rows), dtype=np.int64)
+        return _Near(rows, nodes, nodes, self._least(rows, nodes, nodes, (0, 0)), (0, 0))
+
+    def _below(self, front: _Near) -> _Near:
+        """The pairs one level down in the body that has the larger spheres."""
+        one, other = front.levels
+        larger = _radius(self._first, one) >= _radius(self._second, other)
+        of_first = other == self._lasts[1] or (one < self._lasts[0] and larger)
+        body, nodes = (self._first, front.ones) if of_first else (self._second, front.others)
+        assert isinstance(body, MeshBody)
+        parent, node = body.tree.below(one if of_first else other, nodes)
+        rows = front.rows[parent]
+        ones, others = (node, front.others[parent]) if of_first else (front.ones[parent], node)
+        levels = (one + 1, other) if of_first else (one, other + 1)
+        return _Near(rows, ones, others, self._least(rows, ones, others, levels), levels)
+
+    def _least(self, rows: Integers, ones: Integers, others: Integers, levels: tuple[int, int]) -> Floats:
+        """At most the distances (K,) of what is in two spheres."""
         one, one_radius = _spheres(self._first, levels[0], ones)
         other, other_radius = _spheres(self._second, levels[1], others)
-        placed = self._positions[rows] + onward(self._rotations[rows], other)
-        apart = np.linalg.norm(placed - one, axis=1)
-        # Whatever rounding does: a nearest pair is never ruled out.
-        slack = 1e-13 * (1.0 + apart)
-        around = one_radius + other_radius
-        if isinstance(self._first, ConvexBody) and isinstance(self._second, MeshBody):
-            least = self._first.core.from_points(placed) - other_radius
+        positions, rotations = self._positions[rows], self._rotations[rows]
+        if isinstance(self._second, ConvexBody):
+            apart = self._second.core.from_points(backward(rotations, one - positions)) - one_radius
+        elif isinstance(self._first, ConvexBody):
+            apart = self._first.core.from_points(positions + onward(rotations, other)) - other_radius
         else:
-            least = apart - around
-        return least - slack, apart + around + slack
+            between = positions + onward(rotations, other) - one
+            apart = np.linalg.norm(between, axis=1) - one_radius - other_radius
+        # Whatever rounding does: the nearest pair is never ruled out.
+        return np.asarray(apart - 1e-13 * (1.0 + np.abs(apart) + one_radius + other_radius))
 
     def measured(self, near: _Near) -> Gaps:
         """Distances of rows, the likeliest pairs first; what a distance then rules out is not measured."""
@@ -104,9 +122,8 @@ class _Pairs:
         while len(near.rows):
             begins = np.searchsorted(near.rows, near.rows)
             now = np.arange(len(near.rows)) - begins < portion
-            part = _Near(*(values[now] for values in near))
-            found = separation(*self._sets(part))
-            self._upper[:] = np.minimum(self._upper, upper)
+            part = near.take(np.flatnonzero(now))
+            found = separation(*self._sets(part), thorough=False)
             best = np.lexsort((found.upper, part.rows))
             firsts = best[np.flatnonzero(np.diff(part.rows[best], prepend=-1))]
             here = part.rows[firsts]
@@ -115,7 +132,7 @@ class _Pairs:
             upper[where], direction[where] = found.upper[which], found.direction[which]
             np.minimum.at(lower, part.rows, found.lower)
             left = ~now & (near.least < upper[near.rows])
-            near = _Near(*(values[left] for values in near))
+            near = near.take(np.flatnonzero(left))
             if len(near.rows):
                 near = self._beyond(near, direction, upper)
             portion *= 4
@@ -128,7 +145,7 @@ class _Pairs:
         corner = first.support(across) - second.support(-across)
         width = -np.einsum("mi,mi->m", corner, across)
         left = width < upper[near.rows]
-        return _Near(*(values[left] for values in near))
+        return near.take(np.flatnonzero(left))
 
     def _sets(self, near: _Near) -> tuple[Convex, Convex]:
         """The parts of pairs as convex sets in the frame of the first body."""

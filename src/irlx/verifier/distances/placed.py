@@ -21,6 +21,10 @@ class Convex(Protocol):
         """Those of the given indices."""
 
     @property
+    def round(self) -> bool:
+        """Whether they have faces or edges that bend."""
+
+    @property
     def centres(self) -> Floats:
         """A point (M, 3) inside each."""
 
@@ -55,6 +59,11 @@ class Placed:
         return Placed(self.core, self.positions[which], self.rotations[which])
 
     @property
+    def round(self) -> bool:
+        """Whether they have faces or edges that bend."""
+        return self.core.round
+
+    @property
     def centres(self) -> Floats:
         """Their origins (M, 3)."""
         return self.positions
@@ -62,12 +71,12 @@ class Placed:
     @property
     def faces(self) -> Floats:
         """Normals (M, F, 3) of flat faces."""
-        return np.einsum("mij,fj->mfi", self.rotations, self.core.faces)
+        return np.asarray(np.einsum("mij,fj->mfi", self.rotations, self.core.faces))
 
     @property
     def edges(self) -> Floats:
         """Directions (M, E, 3) of straight edges."""
-        return np.einsum("mij,fj->mfi", self.rotations, self.core.edges)
+        return np.asarray(np.einsum("mij,fj->mfi", self.rotations, self.core.edges))
 
     @property
     def ridges(self) -> Floats:
@@ -91,6 +100,11 @@ class Resting:
     def take(self, which: Integers) -> Resting:
         """As many as there are indices."""
         return Resting(self.core, len(which))
+
+    @property
+    def round(self) -> bool:
+        """Whether they have faces or edges that bend."""
+        return self.core.round
 
     @property
     def centres(self) -> Floats:
@@ -122,11 +136,16 @@ class Triangles:
     def support(self, directions: Floats) -> Floats:
         """Corners (M, 3) furthest in directions (M, 3)."""
         best = np.argmax(np.einsum("mij,mj->mi", self.corners, directions), axis=1)
-        return self.corners[np.arange(len(best)), best]
+        return np.asarray(self.corners[np.arange(len(best)), best])
 
     def take(self, which: Integers) -> Triangles:
         """Those of the given indices."""
         return Triangles(self.corners[which])
+
+    @property
+    def round(self) -> bool:
+        """Whether they have faces or edges that bend."""
+        return False
 
     @property
     def centres(self) -> Floats:
@@ -151,15 +170,15 @@ class Triangles:
 
 def onward(rotations: Floats, vectors: Floats) -> Floats:
     """Products R v (M, 3)."""
-    return np.einsum("mij,mj->mi", rotations, vectors)
+    return np.asarray(np.einsum("mij,mj->mi", rotations, vectors))
 
 
 def backward(rotations: Floats, vectors: Floats) -> Floats:
     """Products R' v (M, 3)."""
-    return np.einsum("mji,mj->mi", rotations, vectors)
+    return np.asarray(np.einsum("mji,mj->mi", rotations, vectors))
 
 
 def unit(vectors: Floats) -> Floats:
     """Vectors (.., 3) divided by their length; 0 stays 0."""
     length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0.0)
+    return np.asarray(np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0.0))

@@ -15,6 +15,7 @@ from irlx.verifier.distances.simplex import nearest_to_origin
 CLOSE = 2e-12
 """Width of the bracket at which the search ends, m, for bodies near each other."""
 
+_VAGUE = 1e-10
 _MOST_STEPS = 200
 
 
@@ -31,18 +32,18 @@ class Gaps(NamedTuple):
     direction: Floats
 
 
-def separation(first: Convex, second: Convex, start: Floats | None = None) -> Gaps:
+def separation(first: Convex, second: Convex, start: Floats | None = None, thorough: bool = True) -> Gaps:
     """Distances between M pairs of convex sets by the algorithm of Gilbert, Johnson and Keerthi (1988).
 
     `start` (M, 3): directions from the first to the second to begin with, from centre to centre by default.
     The set of differences of points of both has its point nearest to the origin at the distance: simplices of
     its support points close in on that. Overlapping sets are told by a simplex around the origin, and their
-    depth by `overlap_depth`.
+    depth by `overlap_depth`, `thorough` or not.
     """
     search = _Search(first, second, start)
     while search.active.size and search.steps < _MOST_STEPS:
         search.step()
-    return search.gaps()
+    return search.gaps(thorough)
 
 
 class _Search:
@@ -91,9 +92,7 @@ class _Search:
         self.upper[self.active] = length[on]
         self._keep(kept, corner[kept], found.points[on], found.needs[on])
 
-    def _keep(
-        self, kept: Integers, corner: Floats, points: Floats, needs: NDArray[np.bool_]
-    ) -> None:
+    def _keep(self, kept: Integers, corner: Floats, points: Floats, needs: NDArray[np.bool_]) -> None:
         """The simplices that go on: the new corner in a place that is free, older ones that are needed."""
         corners = self._corners[kept]
         free = np.argmin(needs, axis=1)
@@ -104,12 +103,18 @@ class _Search:
         self._corners, self._held, self._point = corners, needs, points
         self._near = self._near[0].take(kept), self._near[1].take(kept)
 
-    def gaps(self) -> Gaps:
+    def gaps(self, thorough: bool) -> Gaps:
         """What was found."""
         # Where a point of the differences is the origin itself the sets touch, or overlap.
-        deep = np.flatnonzero(self.overlaps | (self.upper <= CLOSE))
-        if deep.size:
-            sets = self.first.take(deep), self.second.take(deep)
-            depth, direction = overlap_depth(*sets, self.direction[deep])
-            self.lower[deep], self.direction[deep], self.upper[deep] = depth, direction, depth
+        touch = self.overlaps | (self.upper <= CLOSE)
+        # Points too near each other for their difference to have a direction: faces and edges have one.
+        vague = ~touch & (self.upper - self.lower > _VAGUE)
+        for which, full in ((touch, thorough), (vague, False)):
+            pairs = np.flatnonzero(which)
+            if not pairs.size:
+                continue
+            sets = self.first.take(pairs), self.second.take(pairs)
+            width, direction = overlap_depth(*sets, self.direction[pairs], full)
+            self.lower[pairs], self.direction[pairs] = width, direction
+        self.upper[touch] = self.lower[touch]
         return Gaps(self.lower, np.maximum(self.upper, self.lower), self.direction)

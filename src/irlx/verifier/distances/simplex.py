@@ -14,7 +14,7 @@ _FLAT = 1e-24
 
 
 class Nearest(NamedTuple):
-    """Nearest points (M, 3); which of the older corners they need (M, 3); whether the origin is inside (M,)."""
+    """Nearest points (M, 3); which of the older corners they need (M, 3); if the origin is inside (M,)."""
 
     points: Floats
     needs: NDArray[np.bool_]
@@ -22,7 +22,7 @@ class Nearest(NamedTuple):
 
 
 def nearest_to_origin(newest: Floats, older: Floats, held: NDArray[np.bool_]) -> Nearest:
-    """Nearest points of simplices with corners `newest` (M, 3) and those of `older` (M, 3, 3) that are `held`.
+    """Nearest points of simplices with corners `newest` (M, 3), and `older` (M, 3, 3) that are `held`.
 
     Only faces with the newest corner are looked at, each by its own formula, and the best of those whose
     foot of the perpendicular lies in them is taken: no order of cases that rounding could upset.

@@ -1,4 +1,4 @@
-"""Spheres around the triangles of a mesh, around groups of these, and so on: what is far is ruled out at once."""
+"""Spheres around the triangles of a mesh, around groups of them, and so on: to rule out what is far."""
 
 from __future__ import annotations
 
