@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -20,7 +22,7 @@ from irlx.verifier.clearance.pairs import (
 from irlx.verifier.clearance.search import capped_distances, near_rows
 from irlx.verifier.clearance.spans import Spans, obstacle_spans, rows_in
 from irlx.verifier.evidence import Evidence
-from irlx.verifier.findings.finding import FAILED, NOT_CHECKED, Check
+from irlx.verifier.findings.finding import FAILED, NO_CASE, NOT_CHECKED, OK, Check
 from irlx.verifier.rows import Rows
 
 _Watch = tuple[Pair, tuple[tuple[int, int], ...]]
@@ -43,6 +45,7 @@ class ClearanceChecks:
         self._watched: list[_Watch] = []
         self._floors: dict[int, float] = {}
         self._inside: set[str] = set()
+        self._counted = False
         scene, robot = evidence.scene, evidence.robot
         if scene is None or robot is None:
             asks = any(isinstance(record.block, ObstacleBlock) for record in evidence.outline.records)
@@ -53,6 +56,8 @@ class ClearanceChecks:
             self._watched = _watched(evidence, spans)
         except ValueError as cause:
             self._why_not = str(cause)
+        if spans and not robot.solids:
+            self._why_not = "the robot's links have no solids"
 
     def take(self, rows: Rows) -> None:
         """Add a portion."""
@@ -68,6 +73,7 @@ class ClearanceChecks:
             if not counts.any():
                 self._floors.pop(index, None)
                 continue
+            self._counted = True
             met = meetings(pair, places)
             allowed = self._allowed(index, counts, begins, met)
             place = np.flatnonzero(counts) + 1
@@ -125,7 +131,9 @@ class ClearanceChecks:
         if self._inside:
             names = ", ".join(sorted(self._inside))
             self._tally.detail = f"a motion starts inside the margin and comes no nearer: {names}"
-        return [self._tally.check()]
+        found = self._tally.check()
+        # Everything so far away that its distance is no number.
+        return [replace(found, status=OK) if found.status == NO_CASE and self._counted else found]
 
 
 def _watched(evidence: Evidence, spans: Spans) -> list[_Watch]:
