@@ -69,6 +69,7 @@ class Execution:
             inputs=job.inputs,
             resolution=resolution,
             planned_share=planned_share,
+            scene=cell.scene,
         )
         self.kinematics = setup.kinematics
         self._pacer = Pacer(setup, self._locate)
@@ -102,7 +103,7 @@ class Execution:
 
     def _carried_out(self) -> Generator[Executed, None, None]:
         """What becomes of the blocks; the program runs ahead of them while its moves pass their targets."""
-        ahead = Lookahead(self._locate, self._pacer.notes)
+        ahead = Lookahead(self._locate, self._pacer.notes, obstacles_move=self.job.cell.scene.moves)
         source, reply = self._interpreted(self.channels), None
         with closing(source):
             while True:

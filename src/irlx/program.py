@@ -10,7 +10,8 @@ from functools import partial
 from pathlib import Path
 
 from irlx.cell.find import find_cell, is_file
-from irlx.cell.frame_names import frame_names
+from irlx.cell.frame_names import cell_table, frame_names
+from irlx.cell.obstacle_names import obstacle_names
 from irlx.diagnostics import Diagnostic, IrlxError, Place, SourceText, report
 from irlx.diagnostics.near_files import near_files
 from irlx.language import tree
@@ -195,6 +196,7 @@ class _Beside:
         self.modules: list[ModuleFile] = []
         self.findings: list[Diagnostic] = []
         self.names: tuple[str, ...] = ()
+        self.obstacles: tuple[str, ...] | None = None
         self._open = [program]
         self._done: dict[Path, Analysis] = {}
 
@@ -224,7 +226,8 @@ class _Beside:
             source = decode_source(str(path), content)
         except IrlxError as error:
             raise ModuleProblem("IRL261", module=name, path=path, cause=error.reason.message) from None
-        analysis = analyse(source, self, lambda _: self.names, self.lists)
+        obstacles = lambda _: self.obstacles  # noqa: E731
+        analysis = analyse(source, self, lambda _: self.names, self.lists, obstacles=obstacles)
         self.findings += analysis.diagnostics
         if isinstance(analysis.tree, tree.Module):
             lists = tuple(self.lists.file_of(found) for found in analysis.data_lists)
@@ -249,9 +252,18 @@ def _analysis(
         files.names = _found_names(path, root) if cell is None else frame_names(Path(cell))
         return files.names
 
+    def obstacles(root: tree.Program | tree.Module) -> tuple[str, ...] | None:
+        of_cell = _found_cell(path, root) if cell is None else Path(cell)
+        # A cell that is no TOML has no names to miss: what is wrong with it is told when it is loaded.
+        if of_cell is not None and cell_table(of_cell):
+            files.obstacles = obstacle_names(of_cell)
+        return files.obstacles
+
     try:
         text = decode_source(str(path), content)
-        analysis = analyse(text, files, cell_names, files.lists, joints=joints, lints=lints)
+        analysis = analyse(
+            text, files, cell_names, files.lists, joints=joints, obstacles=obstacles, lints=lints
+        )
     except IrlxError as error:
         raise ProgramError(error.diagnostics) from error
     found = (*analysis.diagnostics, *files.findings)

@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from irlx.blocks import (
+    AskAvoidingPosture,
+    AskClearance,
     AskInput,
     AskInputChange,
     AskJointBounds,
@@ -183,6 +185,17 @@ def _no_text() -> str:
     raise Unanswerable
 
 
+_ONLY_OF_THE_MACHINE = (
+    AskPostureOf,
+    AskNearestPosture,
+    AskAvoidingPosture,
+    AskClearance,
+    AskLastMove,
+    AskJointBounds,
+)
+"""Questions about what only the machine can say."""
+
+
 def _recorded(question: AskInput | AskInputChange, outline: Outline, done: int) -> tuple[float, ...]:
     """What the stream says of inputs, `done` of its blocks being behind: what was read, how long was waited.
 
@@ -215,8 +228,8 @@ def _replayed(program: Program, cell: Cell, outline: Outline, max_steps: int) ->
         except StopIteration:
             return
         reply = None
-        if isinstance(item, AskPostureOf | AskNearestPosture | AskLastMove | AskJointBounds):
-            # What only the machine can say, no stream tells.
+        if isinstance(item, _ONLY_OF_THE_MACHINE):
+            # No stream tells.
             raise Unanswerable
         if isinstance(item, AskPosture):
             records = outline.records

@@ -20,6 +20,9 @@ CODES = [code.id for group in (COMMAND, TYPES, DATA_LISTS, PACING, RUN, FILES, C
 IN_WORDS = {"IRL090", "IRL229", "IRL241", "IRL264", "IRL265", "IRL513", "IRL523", "IRL525", "IRL614"} | {
     "IRL550",
     "IRL553",
+    "IRL641",
+    "IRL642",
+    "IRL645",
 }
 """Codes that no small program for the packaged robot brings about: their pages say so in words."""
 IN_PYTHON = {"IRL580", "IRL581", "IRL582", "IRL583", "IRL584"}

@@ -7,6 +7,8 @@ from dataclasses import replace
 import pytest
 
 from irlx.blocks import (
+    AskAvoidingPosture,
+    AskClearance,
     AskPose,
     AskPosture,
     Blend,
@@ -129,3 +131,22 @@ def test_questions_that_do_not_ask_where_the_robot_is_stop_nothing() -> None:
     assert [len(group) for group in ahead.before(AskPosture(origin(3)))] == [1]
     assert [note.code for note in notes] == ["IRL432"]
     assert ahead.before(AskPosture(origin(3))) == []
+
+
+@pytest.mark.req("LANG-54")
+@pytest.mark.parametrize("moving", [False, True])
+def test_a_distance_stops_only_where_obstacles_move(moving: bool) -> None:
+    notes: list[Diagnostic] = []
+    locate = lambda o: Place.in_text(TEXT, Span(o.start, o.end))  # noqa: E731
+    ahead = Lookahead(locate, Notes(notes), obstacles_move=moving)
+    assert ahead.take(move(1)) == []
+    assert [len(group) for group in ahead.before(AskClearance(origin(2), (0.0,), "wall"))] == [1] * moving
+    assert [note.code for note in notes] == ["IRL432"] * moving
+
+
+@pytest.mark.req("LANG-54")
+def test_an_avoiding_posture_stops() -> None:
+    ahead = Lookahead(lambda o: Place.in_text(TEXT, Span(o.start, o.end)), Notes([]))
+    assert ahead.take(move(1)) == []
+    asked = AskAvoidingPosture(origin(2), (0.0, 0.0, 0.0), None, "wall")
+    assert [len(group) for group in ahead.before(asked)] == [1]

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from irlx.solids.hull import hull_of, hull_of_mesh
-from irlx.solids.mesh_file import MeshFileError
+from irlx.solids.hull import hull_of
+from irlx.solids.mesh_file import MeshFileError, read_mesh
 from irlx.solids.triangles import Triangles
 from mesh_files import CUBE, TRIANGLES, obj, stl
 
@@ -49,11 +49,11 @@ def test_flat_surfaces_have_none(flat):
 
 def test_the_hull_of_a_file_is_built_once(mesh):
     written = mesh("h.stl", stl(CUBE, TRIANGLES[1:]), (2.0, -1.0, 1.0))
-    hull = hull_of_mesh(written)
-    assert hull is hull_of_mesh(written)
+    hull = hull_of(read_mesh(written))
+    assert hull is hull_of(read_mesh(written))
     assert hull.volume == pytest.approx(2.0, rel=1e-6)
 
 
 def test_a_flat_file_tells_its_reason(mesh):
     with pytest.raises(MeshFileError, match="one plane"):
-        hull_of_mesh(mesh("f.obj", obj(CUBE, [(0, 1, 2), (1, 3, 2)])))
+        hull_of(read_mesh(mesh("f.obj", obj(CUBE, [(0, 1, 2), (1, 3, 2)]))))

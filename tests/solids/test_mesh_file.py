@@ -139,11 +139,29 @@ def test_missing_files(tmp_path):
         read_mesh(Mesh(str(tmp_path / "folder.stl")))
 
 
-@pytest.mark.parametrize(("package", "ending"), [("trimesh", "stl"), ("collada", "dae")])
+@pytest.mark.parametrize(("package", "ending"), [("trimesh", "ply"), ("collada", "dae")])
 def test_without_the_packages(mesh, monkeypatch, package, ending):
     monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(MeshReaderMissing, match=f"the package (py)?{package} is not installed"):
         read_mesh(mesh(f"missing.{ending}", WRITERS[ending](CUBE, TRIANGLES)))
+
+
+def test_binary_stl_needs_no_package(mesh, monkeypatch):
+    monkeypatch.setitem(sys.modules, "trimesh", None)
+    found = read_closed_mesh(mesh("own.stl", stl(CUBE * 3.0, TRIANGLES)))
+    assert found.volume == pytest.approx(27.0)
+    text = b"solid x\n" + b"facet normal 0 0 0\nouter loop\n" + b"vertex 0 0 0\n" * 3 + b"endloop\nendfacet\n"
+    with pytest.raises(MeshReaderMissing):
+        read_mesh(mesh("text.stl", text + b"endsolid x\n"))
+
+
+def test_stl_as_text(mesh):
+    lines = ["solid cube"]
+    for face in TRIANGLES:
+        corners = [f"vertex {x} {y} {z}" for x, y, z in CUBE[list(face)]]
+        lines += ["facet normal 0 0 0", "outer loop", *corners, "endloop", "endfacet"]
+    found = read_closed_mesh(mesh("t.stl", "\n".join([*lines, "endsolid cube", ""]).encode()))
+    assert found.volume == pytest.approx(1.0)
 
 
 def test_a_file_is_read_once_while_it_stays_as_it_is(mesh):

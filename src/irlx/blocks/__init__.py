@@ -18,6 +18,8 @@ from irlx.blocks.options import (
     LimitSwitchBlock,
 )
 from irlx.blocks.questions import (
+    AskAvoidingPosture,
+    AskClearance,
     AskInput,
     AskInputChange,
     AskJointBounds,
@@ -39,6 +41,8 @@ from irlx.blocks.tool import ToolBlock, WeightsBlock
 
 __all__ = [
     "ArcCourse",
+    "AskAvoidingPosture",
+    "AskClearance",
     "AskInput",
     "AskInputChange",
     "AskJointBounds",

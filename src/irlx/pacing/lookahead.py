@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from irlx.blocks import (
+    AskClearance,
     AskManipulability,
     AskPose,
     Block,
@@ -29,12 +30,16 @@ class Lookahead:
 
     A group is what `take` and `stop` give back: one block of any kind, or moves that may pass their targets,
     with the signals between them; only after the last one the robot surely stands. Blends that a group cannot
-    have because of what comes behind it are noted.
+    have because of what comes behind it are noted. While `obstacles_move`, distances from them depend on the
+    time, so that questions for them stop the robot.
     """
 
-    def __init__(self, locate: Callable[[Origin], Place], notes: Notes) -> None:
+    def __init__(
+        self, locate: Callable[[Origin], Place], notes: Notes, *, obstacles_move: bool = False
+    ) -> None:
         self._locate = locate
         self._notes = notes
+        self._obstacles_move = obstacles_move
         self._waiting: list[Block] = []
         self._moves = 0
 
@@ -57,6 +62,9 @@ class Lookahead:
         """Groups to carry out before a question is answered: none where its answer is the same anywhere."""
         if isinstance(question, AskPose | AskManipulability):
             return []
+        if isinstance(question, AskClearance):
+            why = "the answer depends on where the obstacles are by then"
+            return self.stop(question.origin, why) if self._obstacles_move else []
         return self.stop(question.origin, "the answer depends on where the robot stands")
 
     def stop(self, where: Origin | None, why: str) -> list[tuple[Block, ...]]:

@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.blocks import (
+    AskAvoidingPosture,
+    AskClearance,
     AskInput,
     AskInputChange,
     AskJointBounds,
@@ -24,6 +26,7 @@ from irlx.blocks import (
     MachineQuestion,
     MoveBlock,
     MoveKind,
+    ObstacleBlock,
     Origin,
     PauseBlock,
     PoseTarget,
@@ -35,9 +38,11 @@ from irlx.blocks import (
 from irlx.diagnostics import Diagnostic, Place
 from irlx.pacing.answers import answer_of_bounds, answer_of_last_move, answer_of_posture, way_of
 from irlx.pacing.beyond import posture_beyond, ticks_beyond
+from irlx.pacing.clearance_answers import Clearances, avoiding_posture, pairs_of
 from irlx.pacing.executed import Executed
 from irlx.pacing.inputs import answer_of_inputs
 from irlx.pacing.joint_moves import move_joints
+from irlx.pacing.kept_clear import kept_clear
 from irlx.pacing.motion import Motion
 from irlx.pacing.notes import Notes
 from irlx.pacing.options import LimitsInForce, Options, SwitchBlock
@@ -72,11 +77,14 @@ class Pacer:
         self.warnings: list[Diagnostic] = []
         self.notes = Notes(self.warnings)
         self._last_way = (0.0, 0.0)
+        self._distances = Clearances(setup.kinematics, setup.scene)
+        self._clearance = kept_clear(setup.kinematics, setup.scene, self.options)
 
     def answer(self, question: MachineQuestion) -> tuple[float, ...]:
         """Answer to a question of the interpreter, all blocks before it executed.
 
-        Raises PacingError, IRL522, for the posture of a pose that none reaches.
+        Raises PacingError: IRL522 for the posture of a pose that none reaches; IRL573, IRL574 where there is
+        no distance to tell.
         """
         if isinstance(question, AskPosture):
             return tuple(float(value) for value in self.q)
@@ -85,6 +93,11 @@ class Pacer:
             return answer_of_inputs(question, setup.inputs, self.tick * setup.dt, setup.dt, self.locate)
         if isinstance(question, AskPose | AskManipulability):
             return answer_of_posture(question, self.setup.kinematics)
+        if isinstance(question, AskClearance):
+            time = self.tick * self.setup.dt
+            return self._distances.answer(question, time, self.locate(question.origin))
+        if isinstance(question, AskAvoidingPosture):
+            return avoiding_posture(question, self._situation)
         if isinstance(question, AskLastMove):
             return answer_of_last_move(*self._last_way)
         if isinstance(question, AskJointBounds):
@@ -107,6 +120,7 @@ class Pacer:
             self.locate,
             self.warnings,
             self.notes,
+            self._clearance,
         )
 
     @property
@@ -178,11 +192,15 @@ class Pacer:
             from irlx.pacing.criteria import check_criterion
 
             check_criterion(block.choice, self._robot, place)
+        if isinstance(block, ObstacleBlock):
+            pairs_of(block.name, self.setup.kinematics, self.setup.scene, place)
         if isinstance(block, ToolBlock | WeightsBlock):
             self._setup = refitted(self._setup, block, place)
             self._solver = TickSolver(self._setup.kinematics, self.qp)
         if isinstance(block, SwitchBlock):
             self.options = self.options.after(block, self.q)
+        if isinstance(block, ToolBlock | ObstacleBlock):
+            self._clearance = kept_clear(self._setup.kinematics, self._setup.scene, self.options)
         return None
 
     def _motion(self, moves: list[MoveBlock]) -> Motion:

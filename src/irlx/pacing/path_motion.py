@@ -126,6 +126,7 @@ def _walked(
         motion.start,
         asked,
         thorough,
+        model.clearance,
     )
     if walked.halt is not None:
         return walked, None

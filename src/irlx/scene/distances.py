@@ -77,6 +77,8 @@ class Distances:
         self._levers = Levers.of(kinematics, self._bodies, self._radii, self._first, self._second)
         self._last = np.zeros(kinematics.joints)
         self._least = np.full(len(pairs), -np.inf)
+        self._slack = -np.inf
+        self._longest = self._levers.longest
         self._here: Array | None = None
         self._time = 0.0
 
@@ -86,6 +88,12 @@ class Distances:
             return
         raise NotImplementedError
 
+    def far(self, q: Array) -> bool:
+        """Whether it is certain without a look that no pair is within its influence at posture q (n,)."""
+        if self._slack <= 0.0 or self._longest is None:
+            return False
+        return bool(self._longest.dot(np.abs(q - self._last)) < self._slack)
+
     def near(self, q: Array, within: Array | None = None) -> Near:
         """Pairs nearer than `within` (K,) m, by default their influence, at posture q (n,)."""
         reach = self.influence if within is None else within
@@ -94,6 +102,7 @@ class Distances:
         found = self.of(q, asked)
         least[asked] = found.distance
         self._least, self._last = least, q.copy()
+        self._slack = float(np.min(least - self.influence, initial=np.inf))
         close = found.distance < reach[asked]
         return found if np.all(close) else found.chosen(close)
 

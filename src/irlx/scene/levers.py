@@ -56,6 +56,11 @@ class Levers:
         pairs = fixed[first] + fixed[second]
         return cls(pairs, tuple((k, added[first] + added[second]) for k, added in drawn.items()))
 
+    @property
+    def longest(self) -> Array | None:
+        """The longest lever of each joint (n,) over all pairs; None where slides make them longer."""
+        return None if self.slides else np.max(self.fixed, axis=0, initial=0.0)
+
     def moved(self, before: Array, after: Array) -> Array:
         """Bound (K,), m, of what pairs come nearer between two postures (n,), every joint going straight."""
         way = np.abs(after - before)

@@ -30,6 +30,11 @@ class Scene:
         """Every name that OBSTACLE may call, as the cell writes it; groups as they are kept."""
         return (*(obstacle.name for obstacle in self.obstacles.values()), *self.groups)
 
+    @property
+    def moves(self) -> bool:
+        """Whether any obstacle moves, so that distances depend on the time."""
+        return any(obstacle.trajectory for obstacle in self.obstacles.values())
+
     def members(self, name: str) -> tuple[Obstacle, ...]:
         """The obstacles that a name stands for, whatever its case. Raises KeyError where none does."""
         key = name.casefold()

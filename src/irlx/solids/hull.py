@@ -7,17 +7,18 @@ from functools import lru_cache
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
-from irlx.solids.mesh_file import MeshFileError, read_mesh
-from irlx.solids.shape import Mesh
+from irlx.solids.mesh_file import MeshFileError
 from irlx.solids.triangles import Triangles
 
 _KEPT = 256
 
 
+@lru_cache(maxsize=_KEPT)
 def hull_of(triangles: Triangles) -> Triangles:
     """Convex hull of a surface's vertices; its corners are vertices of the surface, its faces look outwards.
 
-    Raises MeshFileError where the vertices lie in one plane.
+    Built once for a surface, and `read_mesh` gives the same one for a file that stays as it is. Raises
+    MeshFileError where the vertices lie in one plane.
     """
     points = np.asarray(triangles.vertices)
     try:
@@ -33,14 +34,3 @@ def hull_of(triangles: Triangles) -> Triangles:
     faces = place[hull.simplices]
     faces[inwards] = faces[inwards, ::-1]
     return Triangles(points[kept], faces.astype(np.int64))
-
-
-def hull_of_mesh(mesh: Mesh) -> Triangles:
-    """Convex hull of a mesh file, m, built once a process. Raises MeshFileError as `read_mesh` does."""
-    return _built(read_mesh(mesh))
-
-
-@lru_cache(maxsize=_KEPT)
-def _built(triangles: Triangles) -> Triangles:
-    """`hull_of`; a surface is itself alone, and `read_mesh` gives the same one for an unchanged file."""
-    return hull_of(triangles)

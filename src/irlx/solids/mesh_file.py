@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cache, lru_cache
+from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -12,15 +14,24 @@ from numpy.typing import NDArray
 from irlx.solids.shape import Mesh
 from irlx.solids.triangles import Triangles
 
-FORMATS = ("stl", "obj", "ply", "dae")
-"""Endings of the mesh files that are read, without the dot, in small letters."""
+_TRIMESH = {"trimesh": "trimesh"}
+_READERS = {
+    "stl": _TRIMESH,
+    "obj": _TRIMESH,
+    "ply": _TRIMESH,
+    "dae": {**_TRIMESH, "collada": "pycollada"},
+}
+"""Endings of the mesh files that are read, and the modules that read them with the packages they are in."""
+_STL_HEAD = 84
+_STL_FACE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+"""A binary STL file: 80 bytes, the number of faces in 4 more, then the faces."""
 _SAME = 1e-7
 """Vertices nearer than this share of a mesh's extent are one; files repeat them for every face."""
 _FLAT = 1e-12
 """Share of the volume of its bounding box that a surface has to enclose."""
 _FARTHEST = 1e12
 """Coordinates of a mesh file lie below; beyond, squares and products of them say nothing."""
-_KEPT = 64
+_KEPT = 256
 
 
 class MeshFileError(ValueError):
@@ -42,12 +53,12 @@ def read_mesh(mesh: Mesh) -> Triangles:
     Vertices at the same place are joined, faces without area dropped. A scale that mirrors turns the faces
     around. The unit that a COLLADA file states counts, its upward axis does not, as for ROS. Read once a
     process while the file stays as it is. Raises MeshFileError: no such file, unreadable, empty, a
-    format that is not known; MeshReaderMissing without the extra `meshes`.
+    format that is not known; MeshReaderMissing without the extra `meshes`, which binary STL does not need.
     """
     path = Path(mesh.file)
     ending = path.suffix[1:].lower()
-    if ending not in FORMATS:
-        raise MeshFileError(f"'{path.suffix}' is no format of meshes that irlx reads: {', '.join(FORMATS)}")
+    if ending not in _READERS:
+        raise MeshFileError(f"'{path.suffix}' is no format of meshes that irlx reads: {', '.join(_READERS)}")
     try:
         state = path.stat()
     except (OSError, ValueError) as cause:
@@ -91,8 +102,49 @@ def _read(mesh: Mesh, modified: int, size: int) -> Triangles:
     return found
 
 
+def missing_package(mesh: Mesh) -> str:
+    """The package that reads a mesh file and is not installed, or ''; also for a file that cannot be read.
+
+    Binary STL files need none.
+    """
+    path = Path(mesh.file)
+    needed = _READERS.get(path.suffix[1:].lower(), {})
+    lacking = next((package for module, package in needed.items() if not _is_installed(module)), "")
+    return "" if lacking and _is_binary_stl(path) else lacking
+
+
+@cache
+def _is_installed(module: str) -> bool:
+    return find_spec(module) is not None
+
+
+def _is_binary_stl(path: Path) -> bool:
+    """Whether a file is an STL file as long as the number of faces in its head says."""
+    if path.suffix.lower() != ".stl":
+        return False
+    try:
+        with path.open("rb") as file:
+            head = file.read(_STL_HEAD)
+        size = path.stat().st_size
+    except OSError:
+        return False
+    return size == _STL_HEAD + _STL_FACE.itemsize * int.from_bytes(head[80:], "little")
+
+
 def _content(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Vertices and faces as the file has them. Raises MeshFileError."""
+    try:
+        content = path.read_bytes()
+    except OSError as cause:
+        raise MeshFileError(_words(cause)) from cause
+    if not content.strip():
+        raise MeshFileError("it is empty")
+    if _is_binary_stl(path):
+        # Read here: most meshes of robots are such files, and to import trimesh takes longer than they do.
+        corners = np.frombuffer(content, _STL_FACE, offset=_STL_HEAD)["corners"]
+        with np.errstate(invalid="ignore"):
+            vertices = corners.reshape(-1, 3).astype(float)
+        return vertices, np.arange(len(vertices)).reshape(-1, 3)
     loaded = _loaded(path)
     vertices = np.array(loaded.vertices, dtype=float).reshape(-1, 3)
     faces = np.array(loaded.faces, dtype=np.int64).reshape(-1, 3)
@@ -103,28 +155,21 @@ def _content(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
 
 def _loaded(path: Path) -> Any:
     """What trimesh makes of a file, one mesh of all that it holds. Raises MeshFileError."""
-    try:
-        import trimesh
-    except ImportError as cause:
-        raise MeshReaderMissing("the package trimesh is not installed") from cause
-    collada = path.suffix.lower() == ".dae"
-    if collada:
+    ending = path.suffix[1:].lower()
+    for module, package in _READERS[ending].items():
         try:
-            import collada as _reader  # noqa: F401
+            import_module(module)
         except ImportError as cause:
-            raise MeshReaderMissing("the package pycollada is not installed") from cause
+            raise MeshReaderMissing(f"the package {package} is not installed") from cause
+    import trimesh
+
     try:
-        content = path.read_bytes()
-        if not content.strip():
-            raise MeshFileError("it is empty")
         loaded = trimesh.load_mesh(str(path), process=False)
-        return loaded.convert_units("meters") if collada else loaded
-    except MeshFileError:
-        raise
+        return loaded.convert_units("meters") if ending == "dae" else loaded
     except Exception as cause:
         # A broken file makes the readers of the formats fail in ways of their own: index, key, struct, XML.
         detail = "" if isinstance(cause, ImportError) else f" ({_words(cause)})"
-        raise MeshFileError(f"it is no whole {path.suffix[1:].upper()} file{detail}") from cause
+        raise MeshFileError(f"it is no whole {ending.upper()} file{detail}") from cause
 
 
 def _joined(

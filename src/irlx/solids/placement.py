@@ -27,3 +27,24 @@ class Placement:
             cx * cy * cz + sx * sy * sz,
         )
         return cls(xyz, orientation)
+
+    def of(self, inner: Placement) -> Placement:
+        """Where `inner`, a pose in this frame, lies in the frame that this one is placed in."""
+        x, y, z = (a + b for a, b in zip(self.position, self.turned(inner.position), strict=True))
+        return Placement((x, y, z), _product(self.orientation, inner.orientation))
+
+    def turned(self, vector: Vector3) -> Vector3:
+        """A vector of this frame in the directions of the frame that it is placed in."""
+        x, y, z, w = self.orientation
+        turned = _product(_product(self.orientation, (*vector, 0.0)), (-x, -y, -z, w))
+        return turned[:3]
+
+
+def _product(first: Quaternion, second: Quaternion) -> Quaternion:
+    (ax, ay, az, aw), (bx, by, bz, bw) = first, second
+    return (
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+        aw * bw - ax * bx - ay * by - az * bz,
+    )

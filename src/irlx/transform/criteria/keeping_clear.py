@@ -1,0 +1,90 @@
+"""Keeping clear: the nearest points of the robot are led away from obstacles."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irlx.scene.distances import Distances
+from irlx.transform.criteria.term import Term
+
+Array = NDArray[np.float64]
+
+OBSTACLE_WEIGHT = 0.7
+"""a_obs: weight of the term, displacements in mm."""
+
+POSTURE_WEIGHT = 0.3
+"""a_conf: what is left of the posture term while an obstacle is near."""
+
+_SQUARE_MILLIMETRES = 1e6
+_STEP = 1e-6
+"""alpha R (m2): a critical point that is R away from its obstacle moves on by 1000/R mm, R in mm, .."""
+
+_PER_TIME = 0.05
+""".. in each time (s) of this length."""
+
+_NEAREST = 0.02
+_RAMP = 0.25
+_FALL = 4
+
+
+class KeepingClear(Term):
+    """Sum of w/2 a_obs |alpha v - J_k S|^2 over the pairs of a link and an obstacle within its influence.
+
+    J_k (3, n) is the Jacobian of the link's nearest point, its critical point, v the unit vector away from
+    the obstacle, alpha = 1e-6 m2 / R for every 50 ms of the way, R the distance (m; at least 20 mm).
+    Displacements count in mm. Where one pair is near, w = 1: that is the criterion of Koch's monograph,
+    section 7. Of several pairs at R_i that which is nearest, at R, counts most, w_i ~ (R / R_i)^4, all
+    weights together as one; over the last quarter of the influence distance w rises from 0, so that nothing
+    jumps.
+    """
+
+    name = "keeping clear"
+
+    def __init__(self, distances: Distances) -> None:
+        self._distances = distances
+        self._pushing = np.array([pair.obstacle is not None for pair in distances.pairs], dtype=np.bool_)
+        self._q: Array | None = None
+        self._found: tuple[Array, Array, float] | None = None
+
+    def acts(self, q: Array) -> bool:
+        """Whether an obstacle is near."""
+        return not self._distances.far(q) and self._at(q)[2] > 0.0
+
+    def posture_share(self, q: Array) -> float:
+        """1 far from all obstacles, a_conf near one."""
+        return 1.0 - (1.0 - POSTURE_WEIGHT) * self._at(q)[2]
+
+    def linear(self, q: Array, elapsed: float) -> Array:
+        """-sum w a_obs alpha J_k' v."""
+        return self._at(q)[0] * (elapsed / _PER_TIME)
+
+    def quadratic(self, q: Array) -> Array | None:
+        """sum w a_obs J_k' J_k, shape (n, n)."""
+        found = self._at(q)
+        return found[1] if found[2] > 0.0 else None
+
+    def _at(self, q: Array) -> tuple[Array, Array, float]:
+        """b for 50 ms, B and the largest rise at posture q (n,)."""
+        if self._found is None or self._q is not q:
+            self._q, self._found = q, self._terms(q)
+        return self._found
+
+    def _terms(self, q: Array) -> tuple[Array, Array, float]:
+        distances = self._distances
+        near = distances.near(q)
+        pushing = self._pushing[near.pairs]
+        near = near if np.all(pushing) else near.chosen(pushing)
+        if not len(near.pairs):
+            return np.zeros(q.size), np.zeros((q.size, q.size)), 0.0
+        away = np.maximum(near.distance, _NEAREST)
+        influence = distances.influence[near.pairs]
+        inside = (influence - away) / (_RAMP * (influence - distances.margin[near.pairs]))
+        inside = np.clip(inside, 0.0, 1.0)
+        rise = inside * inside * (3.0 - 2.0 * inside)
+        weight = rise * (np.min(away) / away) ** _FALL
+        weight = OBSTACLE_WEIGHT * _SQUARE_MILLIMETRES * weight / max(float(np.sum(weight)), 1.0)
+        points = distances.jacobians(q, near)
+        step = np.einsum("pi,pij->pj", near.away, points)
+        linear = -np.asarray((weight * _STEP / away) @ step)
+        return linear, np.einsum("p,pij,pik->jk", weight, points, points), float(np.max(rise))
