@@ -7,9 +7,9 @@ from functools import cached_property
 
 import numpy as np
 
-from irlx.solids.mesh_file import read_mesh
+from irlx.solids.mesh_file import MeshFileError, read_mesh
 from irlx.solids.shape import Box, Capsule, Cone, Cylinder, Halfspace, Mesh, Point, Shape, Sphere
-from irlx.streams.joint_stream import Floats
+from irlx.streams.joint_stream import Floats, Integers
 from irlx.verifier.distances.core import BoxCore, ConeCore, Core, CylinderCore
 from irlx.verifier.distances.sphere_tree import SphereTree, sphere_tree
 
@@ -144,13 +144,16 @@ def body_of(shape: Shape) -> Body:
         case Halfspace():
             return HalfspaceBody()
         case Mesh():
-            triangles = read_mesh(shape)
-            return mesh_body(np.asarray(triangles.vertices), np.asarray(triangles.faces))
+            try:
+                triangles = read_mesh(shape)
+            except MeshFileError as cause:
+                raise ValueError(f"the mesh {shape.file}: {cause}") from cause
+            return mesh_body(triangles.vertices, triangles.faces)
 
 
-def mesh_body(vertices: Floats, faces: object) -> MeshBody:
+def mesh_body(vertices: Floats, faces: Integers) -> MeshBody:
     """Body of a mesh: vertices (V, 3) m and corners of its faces as indices (F, 3). Raises ValueError."""
-    corners = np.asarray(vertices, dtype=np.float64)[np.asarray(faces)]
+    corners = vertices[faces]
     if not len(corners) or not np.isfinite(corners).all():
         raise ValueError("a mesh needs triangles with finite corners")
     return MeshBody(corners)
