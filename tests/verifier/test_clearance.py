@@ -1,6 +1,7 @@
 """The check of clearance on streams made by hand: what comes near is found, in its very tick."""
 
 from dataclasses import replace
+from functools import partial
 from itertools import product
 from pathlib import Path
 
@@ -16,11 +17,14 @@ from irlx.scene.obstacle import Waypoint
 from irlx.scene.scene import LinkClearance
 from irlx.solids.placement import Placement
 from irlx.solids.shape import Box, Capsule, Cone, Cylinder, Halfspace, Point, Sphere
+from irlx.streams.scan import scan_of
 from irlx.verifier.clearance.obstacle_poses import obstacle_poses, pose_of
 from irlx.verifier.clearance.search import NEAREST_WITHIN
+from irlx.verifier.clearance.spans import obstacle_spans, rows_in
 from irlx.verifier.distances.between import distances
 from irlx.verifier.distances.body import body_of
 from irlx.verifier.geometry.link_poses import link_poses, moved_links
+from irlx.verifier.outline import outline_of
 
 SEED = 20261129
 MODELS = Path(irlx.__file__).parent / "cell" / "robots"
@@ -137,6 +141,26 @@ def test_there_is_no_case_without_an_obstacle_that_is_on(planar):
     maker.move(swing(0.0, 0.5, 200))
     assert clearance_of(maker, scene_of(wall(0.6))).status == "no case"
     assert clearance_of(maker, None).status == "no case"
+
+
+@pytest.mark.req("STR-06")
+def test_what_is_on_counts_to_the_very_row_of_its_end(planar):
+    maker = StreamMaker(planar, np.zeros(4))
+    maker.switch("wall")
+    maker.switch("all")
+    maker.move(swing(0.0, 0.1, 9))
+    maker.switch("WALL", active=False)
+    maker.move(swing(0.1, 0.0, 9))
+    maker.switch("all", active=False)
+    maker.move(swing(0.0, 0.1, 9))
+    maker.switch("wall")
+    maker.move(swing(0.1, 0.0, 9))
+    maker.switch("nobody")
+    scene = scene_of(wall(0.6), replace(wall(0.6), name="far"), all=("wall", "far"))
+    outline = outline_of(partial(scan_of, maker.stream()))
+    assert obstacle_spans(outline, scene) == ({"wall": ((1, 20), (31, 40)), "far": ((1, 20),)}, ("nobody",))
+    rows = np.arange(42)
+    assert np.flatnonzero(rows_in(((1, 20), (31, 40)), rows)).tolist() == [*range(1, 21), *range(31, 41)]
 
 
 @pytest.mark.req("STR-06")
