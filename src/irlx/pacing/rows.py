@@ -51,7 +51,9 @@ class MotionRows:
     pose; `active` (N, n): 0, or the sign of the side times (1 + BoundSource) of the bound that holds
     a joint back; `s` (N,) path parameter of `length`; `iterations` Newton steps in all; `span` ticks that the
     rows of a dry run stand for, 0 where each is a tick;
-    `limits` in force, None for the robot's own; `path`, None where no path was asked for.
+    `limits` in force, None for the robot's own; `path`, None where no path was asked for. `corner_rows` so
+    many of the first and of the last rows pass a corner between joint space and a path (`Crossing`): they lie
+    on no path.
     """
 
     block: MoveBlock | ReconfigureBlock | WaitBlock | PauseBlock
@@ -69,6 +71,7 @@ class MotionRows:
     path: PathPart | None = None
     stops: bool = True
     span: int = 0
+    corner_rows: tuple[int, int] = (0, 0)
 
     def __len__(self) -> int:
         return int(self.q.shape[0])
@@ -77,6 +80,11 @@ class MotionRows:
     def ticks(self) -> int:
         """Ticks that the motion takes, its hold tick included."""
         return self.span or len(self)
+
+    def passes_corner(self, row: int) -> bool:
+        """Whether a row, counted from 0, lies in a corner between joint space and a path."""
+        first, last = self.corner_rows
+        return row < first or row >= len(self) - last
 
 
 def held(rows: Array) -> Array:

@@ -105,6 +105,10 @@ class ChainWay:
         behind = self._legs[self._part.leg + 1 :]
         return self.length + sum(leg.curve.length for leg in behind)
 
+    def begin_at(self, way: float) -> None:
+        """Let the rows begin at a place on the first leg, m from its start."""
+        self._near, self._along = (self._part, way), way
+
     def take(self, positions: Floats, rotations: Floats, final: bool) -> Placed:
         """Place the next rows (positions (R, 3), rotations (R, 3, 3)), or the first of them.
 
