@@ -29,11 +29,14 @@ LEAST_TICKS = 2
 _KEPT = 3
 """Rows that a move keeps as they are, at least, beside its corners."""
 
-_PARTS = (1.0, 0.7, 0.5, 0.35, 0.2, 0.1, 0.05)
+_PARTS = (1.0, 0.7, 0.45, 0.25, 0.1, 0.04)
 """Parts of the most that a corner may take of a move which are tried, each with each."""
 
-_TIMES = np.linspace(0.3, 1.0, 15)
+_TIMES = np.linspace(0.3, 1.0, 11)
 """Parts of the time that the moves have for it with a stop in which a corner is tried to be passed."""
+
+_SLOWER = 3
+"""Ways that keep the joints' limits, from the quickest on, between the same rows: so many are looked at."""
 
 _TANGENT = 0.1
 """Part of the way beside a corner whose chord counts as the direction in which it is reached or left."""
@@ -113,6 +116,20 @@ class _Cut:
         return self.left + self.joined + 1 - self.ticks
 
 
+@dataclass(frozen=True)
+class _Passed:
+    """A way past the corner that keeps every bound, its `first` rows being those of the first move.
+
+    `rows`: q and the tool's position and rotation; `ways`: distance of the tool from the corner where it is
+    left, joined, and passed, m.
+    """
+
+    cut: _Cut
+    first: int
+    rows: tuple[Array, Array, Array]
+    ways: tuple[float, float, float]
+
+
 class _Corner:
     """Looks for the quickest way from one motion into the next one."""
 
@@ -140,15 +157,18 @@ class _Corner:
         for cut in sorted(self._cuts(most), key=lambda cut: cut.saved, reverse=True):
             found = self._judged(cut)
             if found is not None:
-                return self._shortened(cut, found)
+                return self._crossing(self._shortened(found))
         return Lost("the joints' limits, or the speed of the tool, leave no room for it")
 
-    def _shortened(self, cut: _Cut, found: Crossing) -> Crossing:
+    def _shortened(self, found: _Passed) -> _Passed:
         """A way past the corner, or the same in less ticks, as long as these do."""
-        shorter = self._cut(cut.left, cut.joined, cut.ticks - 1)
-        while shorter is not None and (better := self._judged(shorter)) is not None:
+        cut = found.cut
+        for ticks in range(cut.ticks - 1, 0, -1):
+            shorter = self._cut(cut.left, cut.joined, ticks)
+            better = None if shorter is None else self._judged(shorter)
+            if better is None:
+                return found
             found = better
-            shorter = self._cut(shorter.left, shorter.joined, shorter.ticks - 1)
         return found
 
     def _cuts(self, most: tuple[int, int]) -> Iterator[_Cut]:
@@ -157,10 +177,14 @@ class _Corner:
             left, joined = (
                 max(LEAST_TICKS, round(share * ticks)) for share, ticks in zip(shares, most, strict=True)
             )
+            more = _SLOWER
             for ticks in sorted({max(2, round(part * (left + joined))) for part in _TIMES}):
                 found = self._cut(left, joined, ticks)
                 if found is not None:
                     yield found
+                    more -= 1
+                if not more:
+                    break
 
     def _cut(self, left: int, joined: int, ticks: int) -> _Cut | None:
         """The way of so many ticks, None where the joints cannot go it."""
@@ -211,8 +235,8 @@ class _Corner:
         far = np.linalg.norm(away, axis=1)
         return np.asarray(away[int(np.argmax(far >= _TANGENT * np.max(far)))])
 
-    def _judged(self, cut: _Cut) -> Crossing | None:
-        """The corner passed by a way, None where the tool or a condition does not allow it."""
+    def _judged(self, cut: _Cut) -> _Passed | None:
+        """A way past the corner with its tool, None where that or a condition does not allow it."""
         if broken_condition(cut.q, self._kinematics) is not None:
             return None
         kept = len(self._a) - cut.left
@@ -225,7 +249,7 @@ class _Corner:
             return None
         if self._is_too_fast(cut, first, position, rotation):
             return None
-        return self._crossing(cut, first, (cut.q, position, rotation), (*borders, float(np.min(near))))
+        return _Passed(cut, first, (cut.q, position, rotation), (*borders, float(np.min(near))))
 
     def _is_too_fast(self, cut: _Cut, first: int, position: Array, rotation: Array) -> bool:
         """Whether the tool is too fast on a way, whose `first` rows are those of the first move.
@@ -252,10 +276,9 @@ class _Corner:
                 return True
         return False
 
-    def _crossing(
-        self, cut: _Cut, first: int, rows: tuple[Array, Array, Array], ways: tuple[float, float, float]
-    ) -> Crossing:
-        """The rows handed to both moves: the `first` ones of the way to the first of them."""
+    def _crossing(self, found: _Passed) -> Crossing:
+        """The rows handed to both moves: the first ones of the way to the first of them."""
+        cut, first, rows, ways = found.cut, found.first, found.rows, found.ways
         before, after = self._meeting.before, self._meeting.after
         kept, led = len(self._a) - cut.left, cut.ticks - 1 - first
         ended = _extended(_part(before, 0, kept), tuple(part[:first] for part in rows), behind=True)

@@ -106,7 +106,7 @@ class CrossingPtps:
                 late = corner.way - most * whole
                 miss = max(corner.off * JOINT_LINE / FITS, late)
                 self._straight.add(np.array([row]), np.array([miss]), JOINT_LINE)
-        self._add_zones(demand, (q, rows, positions), (first, last), end)
+        self._add_zones(demand, (q, rows, positions), (first, last), end, 0.5 * share * whole)
         self._add_rates(demand, rows, first, last)
 
     def _corner(self, demand: Demand, start: Floats, end: Floats, corner: Pose | None) -> _End:
@@ -144,8 +144,10 @@ class CrossingPtps:
         of_rows: tuple[Floats, Integers, Floats],
         line: tuple[int, int],
         end: _End | None,
+        most: float,
     ) -> None:
-        """In its corners the tool stays as near to them as where it leaves the line, or the path before."""
+        """In its corners the tool stays as near to them as the path before may be left, or the line, of which
+        the corner takes at `most` so much, rad or m."""
         (q, rows, positions), (first, last) = of_rows, line
         number = demand.move.block.id
         if demand.crosses[0] and demand.start.pose is not None:
@@ -153,7 +155,7 @@ class CrossingPtps:
             self._add_near(rows[:first], positions[:first], demand.start.pose, reach)
         if end is not None and demand.end.pose is not None:
             step = (q[last] - q[first]) / float(np.linalg.norm(q[last] - q[first]))
-            beyond = q[last] + np.linspace(0.0, end.way, 257)[:, None] * step
+            beyond = q[last] + (end.way - np.linspace(0.0, most, 257))[:, None] * step
             away = np.linalg.norm(self._poses(demand, beyond)[0] - demand.end.pose[0], axis=1)
             # Between samples it may be a little farther.
             reach = float(np.max(away)) * (1.0 + 1e-3) + PATH_POSITION
