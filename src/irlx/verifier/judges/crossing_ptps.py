@@ -97,7 +97,8 @@ class CrossingPtps:
         self._progress.add(rows[first : last + 1], furthest - along, JOINT_LINE)
         begin = self._corner(demand, q[last], q[first], demand.start.pose) if demand.crosses[0] else None
         end = self._corner(demand, q[first], q[last], demand.end.pose) if demand.crosses[1] else None
-        length = float(np.linalg.norm(q[last] - q[first]))
+        stood = q[first] if demand.crosses[0] else self._evidence.posture(demand.move.start)
+        length = float(np.linalg.norm(q[last] - stood))
         whole = length + sum(corner.way for corner in (begin, end) if corner is not None)
         blend = demand.move.block.blend
         share = 1.0 if blend is None or blend.share is None else blend.share
