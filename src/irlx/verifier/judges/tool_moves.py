@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from itertools import pairwise
 
 import numpy as np
 
@@ -52,6 +53,7 @@ class ToolMoveChecks:
         self._chains = {demand.move.block.id: chain for chain in evidence.chains for demand in chain}
         self._chain: ChainRows | None = None
         self._neighbours = _neighbours(list(evidence.demands.values()))
+        self._before = {number: before for before, number in pairwise(evidence.demands)}
         for chain in evidence.chains:
             if chain[0].move.start == chain[-1].move.last:
                 self._add_resting_chain(chain)
@@ -97,9 +99,7 @@ class ToolMoveChecks:
         """How far from its start a move of the tool may be off its way: as far as the PTP before it led."""
         if not demand.crosses[0]:
             return 0.0
-        numbers = list(self._evidence.demands)
-        before = numbers[numbers.index(demand.move.block.id) - 1]
-        return self._evidence.reaches.get(-before, np.inf)
+        return self._evidence.reaches.get(-self._before[demand.move.block.id], np.inf)
 
     def _add_resting_chain(self, chain: tuple[Demand, ...]) -> None:
         """A chain without rows must have no way to go."""
