@@ -102,7 +102,7 @@ def _motion(
     handed: list[MotionRows | None] = [rows]
     if touched > 1:
         handed = handed_out(rows, moves[:touched], plan.ends)
-    return Motion(tuple(handed), in_force, rest)
+    return Motion(tuple(handed), in_force, rest, plan.rooms)
 
 
 def _rest(block: MoveBlock, plan: PlannedChain) -> MoveBlock:
