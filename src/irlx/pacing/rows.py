@@ -140,6 +140,8 @@ def _first_tick(rows: MotionRows, row: int) -> int:
     """The first tick that a row stands for; the last row, a hold, stands for one."""
     if row == len(rows):
         return rows.first_tick + rows.ticks
+    if rows.path is not None and row > 0:
+        return rows.path.demands[row - 1].tick + 1
     return rows.first_tick + round(row * (rows.ticks - 1) / (len(rows) - 1))
 
 
