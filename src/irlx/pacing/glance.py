@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from scipy.linalg.lapack import dposv
 
 from irlx.motion.chain_path import ChainPath
-from irlx.motion.pose_path import PosePath
+from irlx.motion.pose_path import PosePath, Poses
 from irlx.motion.time_law import TimeLaw
 from irlx.pacing.demand import Demand
 from irlx.pacing.posture_term import PostureTerm
@@ -33,8 +33,8 @@ Array = NDArray[np.float64]
 NODES = 7
 """Chebyshev nodes of a piece, both ends included."""
 
-SPLITS = (1, 3)
-"""Into how many pieces each piece of the path is cut, tried in turn."""
+ATTEMPTS, SPLITS = 3, 2
+"""How often pieces that are not smooth enough are cut, and into how many."""
 
 SPEED_SHARE, ACCELERATION_SHARE = 0.98, 0.95
 """Parts of the speed and acceleration limits that a motion may use to be none of a limit's business."""
@@ -42,7 +42,7 @@ SPEED_SHARE, ACCELERATION_SHARE = 0.98, 0.95
 POSITION_ROOM = 1e-3
 """The same for positions: room (rad or m) to each limit."""
 
-MOST_TAIL = 1e-4
+MOST_TAIL = 3e-4
 """Largest last coefficient (rad or m) of a polynomial that is believed."""
 
 MOST_TICKS = 50_000
@@ -51,7 +51,7 @@ ROW_STEP = 0.12
 
 _LONGEST = 0.5
 _ROUNDS = 8
-_SETTLED = 1e-6
+_SETTLED = 1e-5
 
 
 @dataclass(frozen=True)
@@ -80,12 +80,14 @@ def glance(motion: Glanced, model: Model) -> Glance | None:
     if model.freedom < 0 or motion.ticks > MOST_TICKS:
         return None
     breaks = _breaks(motion.path)
-    for splits in SPLITS:
-        curve = _curve(motion, model, _cut(breaks, splits))
+    for _ in range(ATTEMPTS):
+        curve = _curve(motion, model, breaks)
         if curve is None:
             return None
-        if curve.tail <= MOST_TAIL:
+        rough = curve.tails > MOST_TAIL
+        if not np.any(rough):
             return _rows(motion, model, curve) if _is_inside(motion, model.limits, curve) else None
+        breaks = _cut(breaks, rough)
     return None
 
 
@@ -99,17 +101,24 @@ def _breaks(path: PosePath) -> Array:
     return np.array([0.0, path.length])
 
 
-def _cut(breaks: Array, splits: int) -> Array:
-    parts = np.arange(splits) / splits
-    return np.append((breaks[:-1, None] + np.diff(breaks)[:, None] * parts).ravel(), breaks[-1])
+def _cut(breaks: Array, chosen: NDArray[np.bool_]) -> Array:
+    """The breaks (S + 1,) with the chosen pieces (S,) cut into `SPLITS`."""
+    parts = np.arange(1, SPLITS) / SPLITS
+    new = breaks[:-1][chosen, None] + np.diff(breaks)[chosen, None] * parts
+    return np.sort(np.concatenate([breaks, new.ravel()]))
 
 
 @dataclass(frozen=True)
 class _Pieces:
-    """Polynomials q(s), one between each two of `breaks` (S + 1,), by their values (S, NODES, n) at the nodes."""
+    """Polynomials q(s), one between each two of `breaks` (S + 1,), by their values (S, NODES, n) at the nodes.
+
+    `nodes` (N + 1,) are the path parameters of all of them, with their `poses`.
+    """
 
     breaks: Array
     values: Array
+    nodes: Array
+    poses: Poses
 
     def at(self, s: Array) -> Array:
         """Postures (M, n) at path parameters s (M,)."""
@@ -121,9 +130,9 @@ class _Pieces:
         return np.asarray((weights[:, None, :] @ self.values[piece])[:, 0])
 
     @cached_property
-    def tail(self) -> float:
-        """Largest of the last two Chebyshev coefficients of a joint (rad or m)."""
-        return float(np.max(np.abs(_TAIL @ self.values)))
+    def tails(self) -> Array:
+        """Largest of the last two Chebyshev coefficients of a joint (rad or m), of each piece (S,)."""
+        return np.asarray(np.max(np.abs(_TAIL @ self.values), axis=(1, 2)))
 
 
 _ANGLES = np.pi * np.arange(NODES) / (NODES - 1)
@@ -163,7 +172,7 @@ def _curve(motion: Glanced, model: Model, breaks: Array) -> _Pieces | None:
     if q is None or not _settle(model, q, targets, drawn):
         return None
     number = np.arange(len(breaks) - 1)[:, None] * (NODES - 1) + np.arange(NODES)
-    return _Pieces(breaks, q[number])
+    return _Pieces(breaks, q[number], nodes, poses)
 
 
 def _references(criteria: list[Criterion]) -> Array | None:
@@ -257,29 +266,27 @@ def _within(values: Array, lower: Array, upper: Array, share: float) -> bool:
 
 def _rows(motion: Glanced, model: Model, curve: _Pieces) -> Glance:
     """Rows at the nodes, and more between them where the joints go far from one to the next."""
-    breaks, values = curve.breaks, curve.values
-    steps = np.max(np.abs(np.diff(values, axis=1)), axis=2)
-    counts = np.ceil(steps / ROW_STEP).astype(int).clip(1)
-    nodes = breaks[:-1, None] + np.diff(breaks)[:, None] * _AT
-    s = np.concatenate(
-        [
-            np.linspace(first, last, count + 1)[1:]
-            for first, last, count in zip(
-                nodes[:, :-1].ravel(), nodes[:, 1:].ravel(), counts.ravel(), strict=True
-            )
-        ]
-    )
-    s[-1] = breaks[-1]
+    nodes, values = curve.nodes, curve.values
+    counts = np.ceil(np.max(np.abs(np.diff(values, axis=1)), axis=2).ravel() / ROW_STEP).astype(int)
+    if np.all(counts <= 1):
+        poses = Poses(curve.poses.position[1:], curve.poses.rotation[1:])
+        return Glance(_joined(values), _demands(motion, nodes[1:], poses))
+    ways = zip(nodes[:-1], nodes[1:], counts, strict=True)
+    s = np.concatenate([np.linspace(first, last, max(count, 1) + 1)[1:] for first, last, count in ways])
     q = curve.at(s)
     q[:, ~model.free], q[-1] = motion.start[~model.free], values[-1, -1]
-    return Glance(q, _demands(motion, s))
+    return Glance(q, _demands(motion, s, motion.path.poses(s)))
 
 
-def _demands(motion: Glanced, s: Array) -> tuple[Demand, ...]:
-    poses, rates = motion.path.poses(s), motion.law.rates_at(s)
-    twists = np.hstack(motion.path.derivatives(s)) * rates[:, None]
+def _joined(values: Array) -> Array:
+    """The postures at all nodes of pieces (S, NODES, n) but the first."""
+    return np.asarray(values[:, 1:].reshape(-1, values.shape[2]))
+
+
+def _demands(motion: Glanced, s: Array, poses: Poses) -> tuple[Demand, ...]:
+    """Demands at path parameters; of their twists, which a dry run has no use for, nothing is said."""
     ticks = np.clip(np.ceil(motion.law.times_at(s) / motion.dt - 1e-9).astype(int), 1, motion.ticks)
     ticks[-1] = motion.ticks
-    before = motion.first_tick - 1
-    columns = (ticks + before).tolist(), s.tolist(), poses.position, poses.rotation, twists
-    return tuple(Demand(*row) for row in zip(*columns, strict=True))
+    unknown = np.full(6, np.nan)
+    columns = (ticks + motion.first_tick - 1).tolist(), s.tolist(), poses.position, poses.rotation
+    return tuple(Demand(*row, unknown) for row in zip(*columns, strict=True))
