@@ -1,10 +1,11 @@
 """Time of `irlx check --motion` against that of the run of the same program, both with all they do.
 
-    python benchmarks/dry_run.py [--rounds N] [--ticks 1,4,10,50] [--only NAME] [--profile NAME] [--json]
+    python benchmarks/dry_run.py [--rounds N] [--ticks 1,4,10,50] [--only NAME] [--long] [--csv] [--profile]
 
-A run is what `irlx run` does: the program is read, carried out, written (IRDATA, `--csv`: CSV) and what was
-written is verified. A check is what `irlx check --motion` does: findings on the text, then the dry run. Both in
-one process that is warm, in turns within a round; the table has medians of processor time in ms, and the ratio.
+A run is what `irlx run` does: the program is read, carried out, written (IRDATA, `--csv`: CSV) and what
+was written is verified. A check is what `irlx check --motion` does: findings on the text, then the dry run.
+Both in one process that is warm, in turns within a round; the table has medians of processor time in ms, and
+the ratio.
 """
 
 from __future__ import annotations
@@ -29,8 +30,9 @@ import irlx
 PROGRAMS = Path(__file__).parent.parent / "programs"
 SEED = 7
 MOVES = 50
+LONG = ("square_slow", "ptp_poses")
 ARM7 = '[robot]\nmodel = "arm7"\n'
-NO_TOOL = np.array([441.0, 200.0, 324.0])
+WORK = np.array([441.0, 200.0, 324.0])
 """Where the tool of arm7 is about to work, mm."""
 
 
@@ -40,19 +42,29 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--ticks", default="1,4,10,50", help="ticks in ms")
     parser.add_argument("--only", help="programs whose name has this in it")
+    parser.add_argument(
+        "--long", action="store_true", help="also those that take minutes: " + ", ".join(LONG)
+    )
     parser.add_argument("--csv", action="store_true", help="the run writes CSV instead of IRDATA")
     parser.add_argument("--profile", action="store_true", help="profile the checks instead")
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of a table")
     asked = parser.parse_args()
     ticks = [float(tick) for tick in asked.ticks.split(",")]
     with tempfile.TemporaryDirectory() as folder:
-        texts = [text for text in written(Path(folder)) if not asked.only or asked.only in text.stem]
+        texts = [
+            text
+            for text in written(Path(folder))
+            if (asked.only or "") in text.stem
+            and (asked.long or asked.only == text.stem or text.stem not in LONG)
+        ]
         if asked.profile:
             profile(texts, ticks)
             return
         ending = ".csv" if asked.csv else ".irdata"
         cases = [(text, tick) for text in texts for tick in ticks]
-        rows = {f"{text.stem}, {tick:g} ms": measured(text, tick, ending, asked.rounds) for text, tick in cases}
+        rows = {
+            f"{text.stem}, {tick:g} ms": measured(text, tick, ending, asked.rounds) for text, tick in cases
+        }
     if asked.json:
         print(json.dumps({"unit": "ms", "rounds": asked.rounds, "cases": rows}, indent=2))
         return
@@ -120,6 +132,7 @@ def written(folder: Path) -> Iterator[Path]:
 
 
 def copied(program: Path, folder: Path) -> Path:
+    """A program in a folder, with its cell and data lists beside it."""
     folder.mkdir(exist_ok=True)
     for beside in program.parent.glob("*.dat"):
         shutil.copy(beside, folder)
@@ -134,9 +147,9 @@ def copied(program: Path, folder: Path) -> Path:
 def drawn() -> dict[str, str]:
     """Bodies of programs for arm7, of `MOVES` moves between drawn points each."""
     rng = np.random.default_rng(SEED)
-    points = [NO_TOOL + rng.uniform(-60.0, 60.0, 3) for _ in range(MOVES)]
+    points = [WORK + rng.uniform(-60.0, 60.0, 3) for _ in range(MOVES)]
     texts = ["({:.3f}, {:.3f}, {:.3f})".format(*point) for point in points]
-    near = ["({:.3f}, {:.3f}, {:.3f})".format(*(NO_TOOL + 0.2 * (point - NO_TOOL))) for point in points]
+    near = ["({:.3f}, {:.3f}, {:.3f})".format(*(WORK + 0.2 * (point - WORK))) for point in points]
     start = np.array([40.0, 29.0, -13.0, 95.0, 9.0, 48.0, -13.0])
     joints = [start + rng.uniform(-15.0, 15.0, 7) for _ in range(MOVES)]
     return {

@@ -18,6 +18,7 @@ from irlx.language.analysis import Analysis, CellJoints, CellNames, DataListReso
 from irlx.language.data_lists import ImportedList
 from irlx.language.modules import ImportedModule, ModuleProblem
 from irlx.language.source import decode_source
+from irlx.language.suppression import Ignore
 from irlx.language.tree.nodes import Name
 
 PathLike = str | os.PathLike[str]
@@ -56,6 +57,7 @@ class Program:
 
     `data_lists` are those of the program itself, `modules` all that it needs, each behind those that it
     imports. `sha256` is that of the file's bytes; it covers lists and modules as well, see `digest_of_all`.
+    `ignores` are what comments ask to ignore and only a run or a look at what can be executed finds.
     """
 
     path: Path
@@ -65,6 +67,7 @@ class Program:
     sha256: str
     data_lists: tuple[DataListFile, ...] = ()
     modules: tuple[ModuleFile, ...] = ()
+    ignores: tuple[Ignore, ...] = ()
 
     @property
     def name(self) -> str:
@@ -98,13 +101,13 @@ def load(path: PathLike, cell: PathLike | None = None) -> Program:
     return _program(file, content, analysis.tree, analysis, files)
 
 
-def _program(
-    file: Path, content: bytes, root: tree.Program, analysis: Analysis, files: _Beside
-) -> Program:
+def _program(file: Path, content: bytes, root: tree.Program, analysis: Analysis, files: _Beside) -> Program:
     lists = tuple(files.lists.file_of(found) for found in analysis.data_lists)
     modules = tuple(files.modules)
     digest = digest_of_all(hashlib.sha256(content).hexdigest(), lists, modules)
-    return Program(file, analysis.source, root, analysis.diagnostics, digest, lists, modules)
+    return Program(
+        file, analysis.source, root, analysis.diagnostics, digest, lists, modules, analysis.ignores
+    )
 
 
 def digest_of_all(program: str, lists: Sequence[DataListFile], modules: Sequence[ModuleFile] = ()) -> str:

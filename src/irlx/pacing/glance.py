@@ -14,6 +14,7 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
+import pinocchio as pin
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dposv
 
@@ -110,7 +111,7 @@ def _cut(breaks: Array, chosen: NDArray[np.bool_]) -> Array:
 
 @dataclass(frozen=True)
 class _Pieces:
-    """Polynomials q(s), one between each two of `breaks` (S + 1,), by their values (S, NODES, n) at the nodes.
+    """Polynomials q(s) between each two of `breaks` (S + 1,), by their `values` (S, NODES, n) at the nodes.
 
     `nodes` (N + 1,) are the path parameters of all of them, with their `poses`.
     """
@@ -162,7 +163,9 @@ def _barycentric(x: Array) -> Array:
 def _curve(motion: Glanced, model: Model, breaks: Array) -> _Pieces | None:
     """Postures over the path; None where they are not found at once."""
     nodes = np.append((breaks[:-1, None] + np.diff(breaks)[:, None] * _AT[:-1]).ravel(), breaks[-1])
-    criteria = [motion.term.at(float(s), float(way)) for s, way in zip(nodes[1:], np.diff(nodes), strict=True)]
+    criteria = [
+        motion.term.at(float(s), float(way)) for s, way in zip(nodes[1:], np.diff(nodes), strict=True)
+    ]
     drawn = _references(criteria)
     if drawn is None:
         return None
@@ -183,7 +186,7 @@ def _references(criteria: list[Criterion]) -> Array | None:
     return np.array(found) if len(found) == len(criteria) else None
 
 
-def _predicted(model: Model, start: Array, targets: list, drawn: Array) -> Array | None:
+def _predicted(model: Model, start: Array, targets: list[pin.SE3], drawn: Array) -> Array | None:
     """Postures (N + 1, n) near those of the nodes: one Newton step from each to the next."""
     free, difference = model.free, model.kinematics.difference
     inverse = free / model.weights
@@ -201,8 +204,8 @@ def _predicted(model: Model, start: Array, targets: list, drawn: Array) -> Array
     return q
 
 
-def _settle(model: Model, q: Array, targets: list, drawn: Array) -> bool:
-    """Bring postures (N + 1, n) onto their poses, the first left as it is, and to what the criterion wants there.
+def _settle(model: Model, q: Array, targets: list[pin.SE3], drawn: Array) -> bool:
+    """Bring postures (N + 1, n), but the first, onto their poses and to what the criterion wants there.
 
     For least motion: each step has no part in the null space, the mean of those at both its ends.
     """
@@ -241,7 +244,7 @@ def _times(matrices: Array, vectors: Array) -> Array:
 
 
 def _is_inside(motion: Glanced, limits: JointLimits, curve: _Pieces) -> bool:
-    """Whether the ticks of a motion keep well away from every limit, by the differences that a run is held to."""
+    """Whether the ticks of a motion keep well away from all limits, by the differences of a run."""
     dt = motion.dt
     s, _ = motion.law.evaluate(dt * np.arange(1.0, motion.ticks + 1.0))
     rows = curve.at(s)
@@ -252,16 +255,13 @@ def _is_inside(motion: Glanced, limits: JointLimits, curve: _Pieces) -> bool:
     rest = np.vstack([motion.start, motion.start, rows, rows[-1:]])
     speeds = np.diff(rest, axis=0) / dt
     accelerations = np.diff(speeds, axis=0) / dt
-    return (
-        _within(speeds, limits.speed_lower, limits.speed_upper, SPEED_SHARE)
-        and _within(accelerations, limits.acceleration_lower, limits.acceleration_upper, ACCELERATION_SHARE)
+    return _within(speeds, limits.speed_lower, limits.speed_upper, SPEED_SHARE) and _within(
+        accelerations, limits.acceleration_lower, limits.acceleration_upper, ACCELERATION_SHARE
     )
 
 
 def _within(values: Array, lower: Array, upper: Array, share: float) -> bool:
-    return bool(
-        np.all(values.max(axis=0) <= share * upper) and np.all(values.min(axis=0) >= share * lower)
-    )
+    return bool(np.all(values.max(axis=0) <= share * upper) and np.all(values.min(axis=0) >= share * lower))
 
 
 def _rows(motion: Glanced, model: Model, curve: _Pieces) -> Glance:

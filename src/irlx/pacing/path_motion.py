@@ -121,9 +121,7 @@ def _glanced(motion: PathMotion, model: Model) -> PacedPath | None:
     plan = motion.plan
     if motion.modifiers:
         return None
-    asked = Glanced(
-        plan.path, plan.law, plan.ticks, motion.start, motion.term, motion.dt, motion.first_tick
-    )
+    asked = Glanced(plan.path, plan.law, plan.ticks, motion.start, motion.term, motion.dt, motion.first_tick)
     seen = glance(asked, model)
     if seen is None:
         return None
