@@ -61,16 +61,20 @@ def main() -> None:
             profile(texts, ticks)
             return
         ending = ".csv" if asked.csv else ".irdata"
-        cases = [(text, tick) for text in texts for tick in ticks]
-        rows = {
-            f"{text.stem}, {tick:g} ms": measured(text, tick, ending, asked.rounds) for text, tick in cases
-        }
+        rows = {}
+        if not asked.json:
+            print(f"{'program, tick':28}{'motion':>9}{'whole run':>11}{'check':>9}{'ratio':>7}")
+        for text in texts:
+            for tick in ticks:
+                name = f"{text.stem}, {tick:g} ms"
+                rows[name] = motion, whole, check = measured(text, tick, ending, asked.rounds)
+                if not asked.json:
+                    print(
+                        f"{name:28}{motion:>9.1f}{whole:>11.1f}{check:>9.1f}{whole / check:>7.1f}", flush=True
+                    )
     if asked.json:
         print(json.dumps({"unit": "ms", "rounds": asked.rounds, "cases": rows}, indent=2))
         return
-    print(f"{'program, tick':28}{'motion':>9}{'whole run':>11}{'check':>9}{'ratio':>7}")
-    for name, (motion, whole, check) in rows.items():
-        print(f"{name:28}{motion:>9.1f}{whole:>11.1f}{check:>9.1f}{whole / check:>7.1f}")
     for tick in ticks:
         ratios = [row[1] / row[2] for name, row in rows.items() if name.endswith(f" {tick:g} ms")]
         print(f"{tick:g} ms: least {min(ratios):.1f}, geometric mean {geometric_mean(ratios):.1f}")
