@@ -53,8 +53,8 @@ class MotionRows:
     a joint back; `s` (N,) path parameter of `length`; `iterations` Newton steps in all; `span` ticks that the
     rows of a dry run stand for, 0 where each is a tick;
     `limits` in force, None for the robot's own; `path`, None where no path was asked for; `nearest` what
-    comes nearest where something is kept clear. `corner_rows` so many of the first and of the last rows pass a
-    corner between joint space and a path (`Crossing`): they lie on no path.
+    comes nearest where something is kept clear. `corner_rows` so many of the first and of the last rows pass
+    a corner between joint space and a path (`Crossing`): they lie on no path.
     """
 
     block: MoveBlock | ReconfigureBlock | WaitBlock | PauseBlock
@@ -150,6 +150,8 @@ def _first_tick(rows: MotionRows, row: int) -> int:
     """The first tick that a row stands for; the last row, a hold, stands for one."""
     if row == len(rows):
         return rows.first_tick + rows.ticks
+    if rows.path is not None and row > 0:
+        return rows.path.demands[row - 1].tick + 1
     return rows.first_tick + round(row * (rows.ticks - 1) / (len(rows) - 1))
 
 

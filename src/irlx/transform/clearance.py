@@ -5,8 +5,8 @@ A pair that is d0 away at the start of a tick of dt may lose the part dt/tau of 
     d(q + S) >= floor,    floor = d0 - (d0 - margin) dt/tau,
 
 one that is inside its margin none of what it had when the motion began. S is the whole step of the tick.
-Distances are linearised at the iterates of Newton's method, until these hardly move any more: a distance bends,
-but little over so short a way, and a row that stays the same lets the steps settle.
+Distances are linearised at the iterates of Newton's method, until these hardly move any more: a distance
+bends, but little over so short a way, and a row that stays the same lets the steps settle.
 """
 
 from __future__ import annotations
