@@ -44,6 +44,7 @@ from irlx.pacing.inputs import answer_of_inputs
 from irlx.pacing.joint_moves import move_joints
 from irlx.pacing.kept_clear import kept_clear
 from irlx.pacing.motion import Motion
+from irlx.pacing.nearest_rows import nearest_rows
 from irlx.pacing.notes import Notes
 from irlx.pacing.options import LimitsInForce, Options, SwitchBlock
 from irlx.pacing.path_moves import move_along_path
@@ -55,6 +56,7 @@ from irlx.pacing.rows import MotionRows
 from irlx.pacing.situation import PacingSetup, Situation
 from irlx.pacing.snap import snapped
 from irlx.pacing.switches import check_freeze, check_inside, check_limit
+from irlx.pacing.too_near import standing
 from irlx.pacing.waiting import waited
 from irlx.transform.qp.proxqp import ProxQpSolver
 from irlx.transform.tick import TickSolver
@@ -78,6 +80,7 @@ class Pacer:
         self.notes = Notes(self.warnings)
         self._last_way = (0.0, 0.0)
         self._distances = Clearances(setup.kinematics, setup.scene)
+        self._links_checked = False
         self._clearance = kept_clear(setup.kinematics, setup.scene, self.options)
 
     def answer(self, question: MachineQuestion) -> tuple[float, ...]:
@@ -201,11 +204,15 @@ class Pacer:
             self.options = self.options.after(block, self.q)
         if isinstance(block, ToolBlock | ObstacleBlock):
             self._clearance = kept_clear(self._setup.kinematics, self._setup.scene, self.options)
+        if isinstance(block, ObstacleBlock) and block.active:
+            names = [obstacle.name for obstacle in self._setup.scene.members(block.name)]
+            self.warnings += standing(self._clearance, self.q, names, place)
         return None
 
     def _motion(self, moves: list[MoveBlock]) -> Motion:
         """The first motion from stop to stop that moves become."""
         block = moves[0]
+        self._check_links(self.locate(block.origin))
         for clause in block.limits:
             place = self.locate(clause.origin)
             self.warnings += check_limit(clause, self._robot, self.setup.limits, self.q, place)
@@ -216,6 +223,12 @@ class Pacer:
         if block.kind is MoveKind.PTP:
             return move_joints(situation, moves, in_force)
         return move_along_path(situation, moves, in_force)
+
+    def _check_links(self, place: Place) -> None:
+        """Before the first motion: whether the robot stands clear of itself."""
+        if not self._links_checked:
+            self._links_checked = True
+            self.warnings += standing(self._clearance, self.q, self._robot.solids, place)
 
     def _move(self, rows: MotionRows | None, motion: Motion, begins: bool = True) -> MotionRows | None:
         """`_moved` for a move, or a further part of one that had to stop on its way."""
@@ -230,7 +243,7 @@ class Pacer:
             return None
         self.q = rows.q[-1]
         self.tick += rows.ticks
-        return replace(rows, limits=in_force.limits)
+        return replace(rows, limits=in_force.limits, nearest=nearest_rows(self._clearance, rows.q))
 
     def _wait(self, block: WaitBlock | PauseBlock, place: Place) -> MotionRows | None:
         setup = self.setup

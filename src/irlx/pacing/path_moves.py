@@ -92,7 +92,8 @@ def _motion(
     term = term_of(situation, block, plan, model, drawn, in_force.limits)
     paced = pace_path(_path_motion(situation, plan, term, place), model, situation.solver)
     if isinstance(paced, Failure):
-        around = Surroundings(situation.kinematics, in_force.limits, situation.free, in_force.told)
+        told, clear = in_force.told, situation.clearance
+        around = Surroundings(situation.kinematics, in_force.limits, situation.free, told, clear, situation.q)
         goal = goal_shortfall(around, plan.path.end_rotation, plan.path.end_position, situation.q)
         raise PacingError(explain_failure(paced, around, plan, situation.tick + 1, goal, place))
     warn_of_posture_left(situation, drawn, paced.q[-1], block, place)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from irlx.blocks import ReconfigureBlock
-from irlx.diagnostics import Place
+from irlx.diagnostics import Place, report
 from irlx.motion.plan_joint_line import RAMP_TIME
 from irlx.motion.whole_ticks import ticks_of_move
 from irlx.pacing.clock import Clock
@@ -26,6 +26,7 @@ from irlx.pacing.slowdown.ladder import TimedCurve
 from irlx.pacing.slowdown.model import Model
 from irlx.pacing.slowdown.planned import PlannedMotion, Refusal, Ticking, rows_on_clock
 from irlx.pacing.snap import SAME_VALUE
+from irlx.pacing.too_near import told
 from irlx.pacing.touching import touching
 from irlx.robot.limits import JointLimits
 from irlx.transform.posture_flow import PostureFlow, posture_flow
@@ -121,6 +122,9 @@ def _planned(
             break
         found = _on_curve(model, flow.further_inside(widening), ticking)
     if isinstance(found, Refusal):
+        if found.near is not None and model.clearance is not None:
+            words, tick = told(model.clearance, found.near), first_tick + found.row
+            raise PacingError(report("IRL561", place, word="RECONFIGURATION", tick=tick, **words))
         if found.broken is None:
             raise ArithmeticError("a posture curve was refused without a reason: the planner is at fault")
         raise PacingError(explain_broken_row(found.broken, first_tick, model.kinematics.description, place))

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from irlx.blocks import MoveBlock, PauseBlock, ReconfigureBlock, WaitBlock
 from irlx.motion.time_law import TimeLaw
 from irlx.pacing.demand import Demand
+from irlx.pacing.nearest_rows import NearestRows
 from irlx.pacing.posture_term import PostureTerm
 from irlx.pacing.slowing import Slowing
 from irlx.robot.limits import JointLimits
@@ -51,7 +52,8 @@ class MotionRows:
     pose; `active` (N, n): 0, or the sign of the side times (1 + BoundSource) of the bound that holds
     a joint back; `s` (N,) path parameter of `length`; `iterations` Newton steps in all; `span` ticks that the
     rows of a dry run stand for, 0 where each is a tick;
-    `limits` in force, None for the robot's own; `path`, None where no path was asked for.
+    `limits` in force, None for the robot's own; `path`, None where no path was asked for; `nearest` what
+    comes nearest where something is kept clear.
     """
 
     block: MoveBlock | ReconfigureBlock | WaitBlock | PauseBlock
@@ -69,6 +71,7 @@ class MotionRows:
     path: PathPart | None = None
     stops: bool = True
     span: int = 0
+    nearest: NearestRows | None = None
 
     def __len__(self) -> int:
         return int(self.q.shape[0])

@@ -181,8 +181,12 @@ def _joined(
         return vertices, faces
     extent = float(np.max(np.ptp(used, axis=0)))
     cells = np.round((used - used.min(axis=0)) / (_SAME * extent if extent > 0.0 else 1.0))
-    _, first, which = np.unique(cells, axis=0, return_index=True, return_inverse=True)
-    corners = which.reshape(-1, 3)
+    # The same as np.unique along an axis, several times faster: sorted, equal cells lie beside each other.
+    order = np.lexsort(cells.T)
+    new = np.append(True, np.any(np.diff(cells[order], axis=0) != 0.0, axis=1))
+    which = np.empty(len(cells), dtype=np.int64)
+    which[order] = np.cumsum(new) - 1
+    corners, first = which.reshape(-1, 3), order[new]
     a, b, c = corners.T
     return used[first], corners[(a != b) & (b != c) & (c != a)].astype(np.int64)
 

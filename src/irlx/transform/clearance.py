@@ -86,7 +86,7 @@ class Clearance:
         return self.nearest(q, start) if np.any(found) else None
 
     def first_short(self, q: Array, start: Array) -> tuple[int, TooNear] | None:
-        """The first of postures q (N, n) at which `short` finds a pair, and that pair; None where none has."""
+        """The first of postures q (N, n) at which `short` finds a pair, and that pair, or None."""
         for row, posture in enumerate(q):
             found = None if self.distances.far(posture) else self.short(posture, start)
             if found is not None:

@@ -105,6 +105,11 @@ class TickSolver:
             second = self._newton(problem, nearest.q - problem.q)
             if isinstance(second, TickSolution):
                 return second
+        if problem.clearance is not None:
+            unaware = self.solve(problem._replace(clearance=None))
+            if unaware.solved:
+                # The bounds leave a way: what comes too near closes it.
+                return unaware._replace(status=TickStatus.TOO_NEAR)
         return self._unsolved(problem, nearest, first)
 
     def _undisturbed(self, problem: TickProblem, whole: Array) -> TickSolution | Array:

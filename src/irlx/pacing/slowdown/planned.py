@@ -63,7 +63,8 @@ class Refusal:
 
     `solution` holds the failed step of the walk. Else the clock of `timed` stands at `knot`, for the bound
     it names. Else only the differences of the rows say no: `broken`, its row counted from the start of
-    the motion. Or something comes too `near`.
+    the motion. Or something comes too `near`, in a
+    `row` from the start of the motion.
     """
 
     s: float
@@ -72,6 +73,7 @@ class Refusal:
     knot: int = -1
     broken: BrokenBound | None = None
     near: TooNear | None = None
+    row: int = 0
 
 
 @dataclass(frozen=True)
@@ -225,7 +227,7 @@ def rows_on_clock(model: Model, timed: TimedCurve, ticking: Ticking, least: floa
             if model.clearance is not None:
                 short = model.clearance.first_short(q, start)
                 if short is not None:
-                    return Refusal(demands[short[0]].s, near=short[1])
+                    return Refusal(demands[short[0]].s, near=short[1], row=short[0])
             return PlannedMotion(q, demands, timed, factor)
         found = Refusal(demands[min(broken.row, rows - 1)].s, broken=broken)
         slower = max(excess.speed, np.sqrt(excess.acceleration)) * (1.0 + _STRETCH_MARGIN)
