@@ -119,7 +119,8 @@ def test_ignored_warnings_of_the_motion(inside, folder):
 
 
 def test_findings_of_all_stages_come_in_the_order_of_the_text(tmp_path):
+    free = "MOVE LIN POSITION(1, 2, 3) WITH TOLERANCE (0, 0, 0, 0, 0, 9);"
     (tmp_path / "p.irl").write_text(
-        "PROGRAM p;\nBEGIN\n  OBSTACLE a;\n  x := 1;\n  OBSTACLEEND a;\nENDPROGRAM\n"
+        f"PROGRAM p;\nBEGIN\n  {free}\n  x := 1;\n  {free}\nENDPROGRAM\n", encoding="utf-8"
     )
     assert [finding.code for finding in irlx.check(tmp_path / "p.irl")] == ["IRL591", "IRL201", "IRL591"]

@@ -99,7 +99,7 @@ def crossed(
 
 
 def _clear_of_all(found: Crossing, start: Array, clearance: Clearance, dt: float) -> Crossing | Lost:
-    """A corner with what comes nearest in its rows, after posture `start` (n,); lost where that is too near."""
+    """A corner with what is nearest in its rows, after posture `start` (n,); lost where that is too near."""
     for rows in (found.before, found.after):
         if clearance.first_short(rows.q, start) is not None:
             return Lost("on the short cut something would come too near")
