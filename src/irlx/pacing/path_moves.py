@@ -155,6 +155,8 @@ def _rows(situation: Situation, block: MoveBlock, plan: PlannedChain, paced: Pac
             paced.planned,
             paced.slowings,
             situation.free,
+            clearance=situation.clearance,
+            first_tick=situation.tick + 1,
         ),
         span=paced.demands[-1].tick + 1 - situation.tick,
     )

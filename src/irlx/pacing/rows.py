@@ -16,6 +16,7 @@ from irlx.pacing.nearest_rows import NearestRows
 from irlx.pacing.posture_term import PostureTerm
 from irlx.pacing.slowing import Slowing
 from irlx.robot.limits import JointLimits
+from irlx.transform.clearance import Clearance
 
 Array = NDArray[np.float64]
 
@@ -29,6 +30,7 @@ class PathPart:
     planned as a whole because ordinary ticks would have broken a bound; `slowings`: the stretches that took
     longer than programmed; `free` (n,): the joints that were not frozen. Of a move that is joined to others
     the path parameter counts over all of them: it `begin`s there, and was `s_before` in the row before.
+    `clearance` is what the motion, whose first tick is `first_tick`, keeps clear.
     """
 
     demands: tuple[Demand, ...]
@@ -41,6 +43,8 @@ class PathPart:
     free: NDArray[np.bool_]
     begin: float = 0.0
     s_before: float = 0.0
+    clearance: Clearance | None = None
+    first_tick: int = 0
 
 
 @dataclass(frozen=True)
