@@ -20,6 +20,7 @@ CODES = [code.id for group in (COMMAND, TYPES, DATA_LISTS, PACING, RUN, FILES, C
 IN_WORDS = {"IRL090", "IRL229", "IRL241", "IRL264", "IRL265", "IRL513", "IRL523", "IRL525", "IRL614"} | {
     "IRL550",
     "IRL553",
+    "IRL574",
     "IRL641",
     "IRL642",
     "IRL645",

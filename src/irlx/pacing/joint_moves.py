@@ -111,7 +111,8 @@ def _motion(
     handed: list[MotionRows | None] = [rows]
     if plan.legs > 1:
         handed = handed_out(rows, moves[: plan.legs], plan.ends)
-    return Motion(tuple(handed), in_force)
+    last = plan.ends[-1] - (plan.ends[-2] if plan.legs > 1 else 0.0)
+    return Motion(tuple(handed), in_force, rooms=(0.5 * plan.ends[0], 0.5 * last))
 
 
 def _rows(situation: Situation, block: MoveBlock, q: Array, s: Array) -> MotionRows:

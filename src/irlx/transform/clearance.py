@@ -2,11 +2,11 @@
 
 A pair that is d0 away at the start of a tick of dt may lose the part dt/tau of what is left above its margin,
 
-    d(q + S) >= floor,    floor = d0 - (d0 - margin) dt/tau,    d0 itself where that is inside the margin,
+    d(q + S) >= floor,    floor = d0 - (d0 - margin) dt/tau,
 
-S the whole step of the tick. Distances are linearised at the iterates of Newton's method, until these hardly
-move any more: a distance bends, but little over so short a way, and a row that stays the same lets the steps
-settle.
+one that is inside its margin none of what it had when the motion began. S is the whole step of the tick.
+Distances are linearised at the iterates of Newton's method, until these hardly move any more: a distance
+bends, but little over so short a way, and a row that stays the same lets the steps settle.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ ALLOWANCE = 1e-6
 """By how much (m) a solved tick may pass its floors."""
 
 _BENDS = 1e-4
+_NEAR_MARGIN = 0.01
 _MOST_LOOKS = 8
 
 
@@ -61,6 +62,7 @@ class Clearance:
     def __init__(self, distances: Distances, begin: float = 0.0) -> None:
         self.distances = distances
         self.begin = begin
+        self._at_start: Near | None = None
 
     def beginning(self, time: float) -> Clearance:
         """The same for a motion that begins at a `time` (s)."""
@@ -79,12 +81,24 @@ class Clearance:
         None where everything is far; where a step from there comes near something, `nears` tells.
         """
         if self.after(elapsed).far(q):
+            self._at_start = None if elapsed == 0.0 else self._at_start
             return None
-        return TickClearance(self.distances, q, dt, reserve, self.begin + elapsed)
+        return self._tick(q, dt, elapsed, reserve)
 
     def watched_tick(self, q: Array, dt: float, elapsed: float) -> TickClearance:
         """The same where something may come near, however far it is at the start of the tick."""
-        return TickClearance(self.distances, q, dt, RESERVE, self.begin + elapsed)
+        return self._tick(q, dt, elapsed, RESERVE)
+
+    def _tick(self, q: Array, dt: float, elapsed: float, reserve: float) -> TickClearance:
+        distances = self.after(elapsed)
+        if elapsed == 0.0:
+            self._at_start = distances.near(q, distances.margin + _NEAR_MARGIN)
+        least = distances.margin + reserve
+        lowest = least.copy()
+        if self._at_start is not None:
+            inside = self._at_start.pairs
+            lowest[inside] = np.minimum(least[inside], self._at_start.distance)
+        return TickClearance(distances, q, dt, (least, lowest), self.begin + elapsed)
 
     def nears(self, q: Array, elapsed: float) -> bool:
         """Whether a tick that began without floors must not end at q (n,) unseen."""
@@ -152,16 +166,23 @@ class Clearance:
 class TickClearance:
     """Floors (P,) of the pairs of one tick, and the rows that they are at an iterate."""
 
-    def __init__(self, distances: Distances, q: Array, dt: float, reserve: float, time: float) -> None:
+    def __init__(
+        self, distances: Distances, q: Array, dt: float, least: tuple[Array, Array], time: float
+    ) -> None:
+        """A tick of dt s from posture q (n,) at a `time` (s) of the run.
+
+        `least` are the distances (K,) of all pairs that are kept, and those that pairs inside of these keep.
+        """
         self._distances = distances
         self._end = time + dt
         distances.at_time(time)
         self._q = q
-        self._least = distances.margin + reserve
+        self._lowest = least[1]
         self.near = distances.near(q)
-        least = self._least[self.near.pairs]
+        pairs, found = self.near.pairs, self.near.distance
         share = min(dt / APPROACH_TIME, 1.0)
-        self.floors = self.near.distance - share * np.maximum(self.near.distance - least, 0.0)
+        lost = found - share * (found - least[0][pairs])
+        self.floors = np.where(found > least[0][pairs], lost, least[1][pairs])
         self._looked_from = np.zeros_like(q)
         self._gradient: Array | None = None
         self._looks = 0
@@ -180,7 +201,7 @@ class TickClearance:
 
         Pairs that were far at the start of the tick count with their margins.
         """
-        distances, least = self._distances, self._least
+        distances, least = self._distances, self._lowest
         distances.at_time(self._end)
         there = distances.near(self._q + whole, np.maximum(distances.influence, least))
         floor = least.copy()
