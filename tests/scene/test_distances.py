@@ -54,6 +54,24 @@ def test_sphere_beside_a_planar_arm():
     assert near.on_other[first] == pytest.approx([0.3, 4.9, 0.0], abs=1e-6)
 
 
+def test_depth_where_the_search_gives_up_at_its_usual_tolerance():
+    """A cylinder of the forearm in the edge of a box: coal had no result at this very posture (programs/window)."""
+    q = [-2.4287964579505164, -0.9519372923291445, 1.831162022686923, 1.3910115738222122]
+    q = np.array([*q, -0.49555565269233254, -0.5678150055792147, 1.3788828249181506])
+    arm = robot()
+    frame = Obstacle("top", (Solid(Box((0.03, 1.1, 0.25))),), Placement((0.42, 0.0, 0.695)), 0.02, 0.2)
+    found = Distances(arm, watched_pairs(arm, [frame], None))
+    every = np.arange(len(found.pairs))
+    here = found.of(q, every)
+    around = [found.of(q + step * np.eye(7)[k], every) for k in range(7) for step in (1e-6, -1e-6)]
+    assert -0.01 < here.distance.min() < -0.005
+    np.testing.assert_allclose(here.distance, np.mean([near.distance for near in around], axis=0), atol=5e-6)
+    np.testing.assert_allclose(np.linalg.norm(here.away, axis=1), 1.0, atol=1e-9)
+    # What is found next does not depend on it.
+    other = q + 0.01
+    np.testing.assert_array_equal(found.of(other, every).distance, Distances(arm, found.pairs).of(other, every).distance)
+
+
 @pytest.mark.req("TRF-13")
 @pytest.mark.parametrize("name", ["arm7", "koch11", "rail6"])
 @pytest.mark.parametrize("seed", range(4))

@@ -23,6 +23,11 @@ Numbers = NDArray[np.intp]
 _TOLERANCE = 1e-9
 """What the search for nearest points may leave (m)."""
 
+_COARSER = (1e-8, 1e-7, 1e-6, 1e-5)
+"""The same where solids overlap and the search gives up at less."""
+
+_NO_DISTANCE = -1e300
+
 _GUESS = np.array([1.0, 0.0, 0.0])
 _FIRST_VERTICES = np.zeros(2, dtype=np.int32)
 _WORLD = pin.ReferenceFrame.WORLD
@@ -134,9 +139,22 @@ class Distances:
             request = self._requests[pair]
             request.cached_gjk_guess, request.cached_support_func_guess = _GUESS, _FIRST_VERTICES
             result = pin.computeDistance(self._model, self._geometry, pair)
+            if result.min_distance < _NO_DISTANCE:
+                result = self._depth(pair)
             distance[k], away[k] = result.min_distance, -result.normal
             on_link[k], on_other[k] = result.getNearestPoint1(), result.getNearestPoint2()
         return Near(pairs, distance, away, on_link, on_other)
+
+    def _depth(self, pair: int) -> Any:
+        """How deep an overlap is, where rounding ends the search at the usual tolerance without a result."""
+        request = self._requests[pair]
+        for request.epa_tolerance in _COARSER:
+            request.cached_gjk_guess, request.cached_support_func_guess = _GUESS, _FIRST_VERTICES
+            result = pin.computeDistance(self._model, self._geometry, pair)
+            if result.min_distance >= _NO_DISTANCE:
+                break
+        request.epa_tolerance = _TOLERANCE
+        return result
 
     def jacobians(self, q: Array, near: Near) -> Array:
         """d(point on link - point on other)/dq (P, 3, n), both points fixed on their bodies, at posture q."""
