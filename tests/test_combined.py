@@ -1,7 +1,7 @@
 """programs/combined: all redundancy options in one program; which of them governs in which move.
 
-Judged from the rows alone: the tool's Jacobian comes from differences of the verifier's forward kinematics, distances from the
-URDF and the cell read anew (tests/support/nearness.py).
+Judged from the rows alone: the tool's Jacobian comes from differences of the verifier's forward kinematics,
+distances from the URDF and the cell read anew (tests/support/nearness.py).
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from nearness import nearest
 
 import irlx
 from irlx.blocks import MoveBlock, ReconfigureBlock
@@ -19,6 +18,7 @@ from irlx.cell.load import load_cell
 from irlx.promises import CLOSURE
 from irlx.verifier.geometry.forward import forward
 from irlx.verifier.geometry.rotations import rotation_vectors
+from nearness import nearest
 
 FOLDER = Path(__file__).parents[1] / "programs" / "combined"
 UNITS = np.array([1e-3, 1e-3, *[np.pi / 180.0] * 6])

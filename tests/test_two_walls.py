@@ -2,21 +2,23 @@
 
 Distances are measured anew from the URDF and the cell (tests/support/nearness.py).
 
-What oscillates changes the sign of its acceleration over and over, the more often the shorter the tick. A line with
-ramps needs few changes: speeding up, the cruise, slowing down. Counted are those between accelerations of more than
-2 % of the joint's largest, by time.
+What oscillates changes the sign of its acceleration over and over, the more often the shorter the tick. A line
+with ramps needs few changes: speeding up, the cruise, slowing down. Counted are those between accelerations of
+more than 2 % of the joint's largest, by time. What goes to and fro has speeds that vary more; a criterion that
+lets the nearest wall alone count makes them vary 1.5 times as much as least motion does, this one 1.33 times.
 """
 
 from __future__ import annotations
 
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
-from nearness import least, nearest
 
 import irlx
+from nearness import least, nearest
 
 pytestmark = pytest.mark.req("TRF-13")
 
@@ -25,7 +27,7 @@ CELL = FOLDER / "two_walls.toml"
 TICKS = [5, 10, 20, 50]
 MARGIN = 0.020
 MOST_CHANGES = 4.0
-"""Sign changes of a joint's acceleration per second; the runs have 1.2 to 2.9, a joint that oscillates 10 and more."""
+"""Sign changes of a joint's acceleration per second; the runs have 1.2 to 2.9, what oscillates 10 and more."""
 
 every_tick = pytest.mark.parametrize("tick", TICKS)
 
@@ -81,7 +83,7 @@ def test_with_least_motion_it_runs_into_the_left_wall() -> None:
 @every_tick
 def test_the_margin_holds_and_both_walls_are_near(tick: int) -> None:
     found = distances("two_walls", tick)
-    assert least(found) >= MARGIN - 1e-6
+    assert least(found) >= MARGIN
     for wall in ("left_wall", "right_wall"):
         assert min(rows.min() for (_, other), rows in found.items() if other == wall) < 0.05
         # Felt in every row: the influence is 0.4 m.
@@ -97,9 +99,9 @@ def test_it_does_not_oscillate(tick: int) -> None:
 
 @every_tick
 def test_speeds_vary_no_more_at_this_tick_than_at_others(tick: int) -> None:
-    """Total variation of the speeds: that of the run with least motion, twice, and the same at every tick."""
+    """Total variation of the speeds: at most 1.4 times that of least motion, and the same at every tick."""
     run, plain = run_of("two_walls", tick), run_of("two_walls_plain", tick)
-    assert np.sum(variation(run)) < 2.0 * np.sum(variation(plain))
+    assert np.sum(variation(run)) < 1.4 * np.sum(variation(plain))
     np.testing.assert_allclose(variation(run), variation(run_of("two_walls", 10)), rtol=0.1)
 
 
@@ -118,7 +120,7 @@ def test_the_tool_is_on_its_lines(tick: int) -> None:
     corners = np.array([[1.0, 0.0], [0.76, 0.0], [1.0, 0.03], [0.76, -0.03], [1.0, 0.0]])
     for row in run.tool[:, :2]:
         away = []
-        for a, b in zip(corners[:-1], corners[1:], strict=True):
+        for a, b in pairwise(corners):
             share = np.clip((row - a) @ (b - a) / ((b - a) @ (b - a)), 0.0, 1.0)
             away.append(np.linalg.norm(a + share * (b - a) - row))
         assert min(away) < 1e-6

@@ -1,6 +1,7 @@
 """What the monograph reports of experiment 6.6, a line past a point, as far as the rebuilt robot bears it.
 
-The distance of the point from arm 4 is written out here: a cylinder of 0.13 m about the line between joints 3 and 4.
+The distance of the point from arm 4 is written out here: a cylinder of 0.13 m radius about the line between
+joints 3 and 4.
 """
 
 from __future__ import annotations
@@ -56,7 +57,7 @@ def active(run: irlx.Run) -> set[tuple[str, str, str]]:
 
 
 def test_the_distance_written_out_is_that_of_points_on_the_cylinder(square) -> None:
-    """Points spread over the solid of arm 4, in a posture in which the point lies beside it and one beyond an end."""
+    """Points spread over the solid of arm 4; in one posture the point is beside it, in one beyond an end."""
     rng = np.random.default_rng(66)
     q = np.zeros((2, 11))
     q[:, :4] = [[0.2, -1.0, -1.5, 1.0], [0.9, -1.4, 0.4, 0.0]]

@@ -55,7 +55,7 @@ def test_sphere_beside_a_planar_arm():
 
 
 def test_depth_where_the_search_gives_up_at_its_usual_tolerance():
-    """A cylinder of the forearm in the edge of a box: coal had no result at this very posture (programs/window)."""
+    """A cylinder of the forearm in the edge of a box: at this very posture coal had no result."""
     q = [-2.4287964579505164, -0.9519372923291445, 1.831162022686923, 1.3910115738222122]
     q = np.array([*q, -0.49555565269233254, -0.5678150055792147, 1.3788828249181506])
     arm = robot()
@@ -69,7 +69,9 @@ def test_depth_where_the_search_gives_up_at_its_usual_tolerance():
     np.testing.assert_allclose(np.linalg.norm(here.away, axis=1), 1.0, atol=1e-9)
     # What is found next does not depend on it.
     other = q + 0.01
-    np.testing.assert_array_equal(found.of(other, every).distance, Distances(arm, found.pairs).of(other, every).distance)
+    np.testing.assert_array_equal(
+        found.of(other, every).distance, Distances(arm, found.pairs).of(other, every).distance
+    )
 
 
 @pytest.mark.req("TRF-13")

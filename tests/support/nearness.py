@@ -1,8 +1,11 @@
-"""How near the links of an arm come to boxes and points of a cell: the URDF and the cell read anew, distances by coal."""
+"""How near the links of an arm come to boxes and points of a cell.
+
+The URDF and the cell are read anew, distances are those of coal.
+"""
 
 from __future__ import annotations
 
-import tomllib
+import sys
 from functools import cache
 from pathlib import Path
 from xml.etree import ElementTree
@@ -13,6 +16,11 @@ from scipy.spatial.transform import Rotation
 
 import irlx
 
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
 ROBOTS = Path(irlx.__file__).parent / "cell" / "robots"
 
 Pose = tuple[np.ndarray, np.ndarray]
@@ -20,7 +28,7 @@ Pose = tuple[np.ndarray, np.ndarray]
 
 
 def nearest(run: irlx.Run, cell: Path) -> dict[tuple[str, str], np.ndarray]:
-    """Distance (N,) m, negative where they overlap, of every link that moves and every obstacle of the cell."""
+    """Distance (N,) m, below 0 where they overlap, of every link that moves from every obstacle of the cell."""
     told = tomllib.loads(cell.read_text(encoding="utf-8"))
     boxes = {one["name"]: one for one in told["obstacle"] if one["shape"] != "group"}
     placed = {name: (_shape(one), _transform(*_pose(one))) for name, one in boxes.items()}
