@@ -2,10 +2,11 @@
 
 Distances are measured anew from the URDF and the cell (tests/support/nearness.py).
 
-What oscillates changes the sign of its acceleration over and over, the more often the shorter the tick. A line
-with ramps needs few changes: speeding up, the cruise, slowing down. Counted are those between accelerations of
-more than 2 % of the joint's largest, by time. What goes to and fro has speeds that vary more; a criterion that
-lets the nearest wall alone count makes them vary 1.5 times as much as least motion does, this one 1.33 times.
+What oscillates changes the sign of its acceleration over and over, the more often the shorter the tick. A
+line with ramps needs few changes: speeding up, the cruise, slowing down. Counted are those between
+accelerations of more than 2 % of the joint's largest, by time. What goes to and fro has speeds that vary
+more: a criterion that lets the nearest wall alone count makes them vary 1.5 times as much as least motion
+does, this one 1.33 times.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ CELL = FOLDER / "two_walls.toml"
 TICKS = [5, 10, 20, 50]
 MARGIN = 0.020
 MOST_CHANGES = 4.0
-"""Sign changes of a joint's acceleration per second; the runs have 1.2 to 2.9, what oscillates 10 and more."""
+"""Sign changes of a joint's acceleration per second; the runs have 1.2 to 2.9, an oscillation 10 and more."""
 
 every_tick = pytest.mark.parametrize("tick", TICKS)
 

@@ -192,7 +192,7 @@ def facts_6_5(speed: irlx.Run, frozen: irlx.Run) -> Facts:
 POINT, BOOM_RADIUS = np.array([5.4, 0.0, 6.6]), 0.13
 """The obstacle of experiment 6.6 and the radius of arm 4, m in the world."""
 BOOM = ((0.0, 0.0, 1.3), (-0.2, 0.0, 0.6), (6.0, 0.0, -0.3), (-4.0, 0.0, -0.3))
-"""Arms 1 to 4 of the arm table, m. At the end of each is the joint of its number: 1 about z, 2 and 3 about y."""
+"""Arms 1 to 4 of the arm table, m. Each ends at the joint of its number: 1 about z, 2 and 3 about y."""
 
 
 def boom(q: Array) -> tuple[Array, Array]:

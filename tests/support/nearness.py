@@ -28,7 +28,7 @@ Pose = tuple[np.ndarray, np.ndarray]
 
 
 def nearest(run: irlx.Run, cell: Path) -> dict[tuple[str, str], np.ndarray]:
-    """Distance (N,) m, below 0 where they overlap, of every link that moves from every obstacle of the cell."""
+    """Distance (N,) m, below 0 where they overlap, of every link that moves from every obstacle."""
     told = tomllib.loads(cell.read_text(encoding="utf-8"))
     boxes = {one["name"]: one for one in told["obstacle"] if one["shape"] != "group"}
     placed = {name: (_shape(one), _transform(*_pose(one))) for name, one in boxes.items()}
