@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.blocks import ObstacleBlock
-from irlx.promises import CLEARANCE
+from irlx.promises import CLEARANCE, STARTED_INSIDE
 from irlx.streams.joint_stream import Floats, Integers
 from irlx.verifier.clearance.pairs import (
     Bodies,
@@ -110,6 +110,7 @@ class ClearanceChecks:
         floors = np.minimum.reduce([margin, *(capped_distances(meeting, starts, margin) for meeting in met)])
         inside = ~(floors >= pair.margin - CLEARANCE)
         floors[~inside] = pair.margin
+        floors[inside] -= STARTED_INSIDE
         if inside.any():
             self._inside.add(pair.name)
         known = np.append(self._floors.get(index, pair.margin), floors)
