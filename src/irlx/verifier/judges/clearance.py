@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.blocks import ObstacleBlock
-from irlx.promises import CLEARANCE
+from irlx.promises import CLEARANCE, STARTED_INSIDE
 from irlx.streams.joint_stream import Floats, Integers
 from irlx.verifier.clearance.pairs import (
     Bodies,
@@ -83,7 +83,8 @@ class ClearanceChecks:
         for _, _, pair, meeting, place, allowed in sorted(asked, reverse=True):
             found = near_rows(meeting, place, allowed, CLEARANCE, self._tally.worst_rank)
             due = allowed[np.searchsorted(place, found.rows)]
-            offends = ~(found.distances >= due - CLEARANCE)
+            slack = np.where(due < pair.margin, STARTED_INSIDE, CLEARANCE)
+            offends = ~(found.distances >= due - slack)
             rank = due - found.distances
             here = rows.first - 1 + found.rows
             self._tally.add(here, found.distances, due, offends, rank, pair=pair.name)
