@@ -83,7 +83,8 @@ class ClearanceChecks:
         for _, _, pair, meeting, place, allowed in sorted(asked, reverse=True):
             found = near_rows(meeting, place, allowed, CLEARANCE, self._tally.worst_rank)
             due = allowed[np.searchsorted(place, found.rows)]
-            offends = ~(found.distances >= due - CLEARANCE)
+            slack = np.where(due < pair.margin, STARTED_INSIDE, CLEARANCE)
+            offends = ~(found.distances >= due - slack)
             rank = due - found.distances
             here = rows.first - 1 + found.rows
             self._tally.add(here, found.distances, due, offends, rank, pair=pair.name)
@@ -110,7 +111,6 @@ class ClearanceChecks:
         floors = np.minimum.reduce([margin, *(capped_distances(meeting, starts, margin) for meeting in met)])
         inside = ~(floors >= pair.margin - CLEARANCE)
         floors[~inside] = pair.margin
-        floors[inside] -= STARTED_INSIDE
         if inside.any():
             self._inside.add(pair.name)
         known = np.append(self._floors.get(index, pair.margin), floors)
