@@ -17,7 +17,7 @@ POSTURE_WEIGHT = 0.3
 """a_conf: what is left of the posture term while an obstacle is near."""
 
 _SQUARE_MILLIMETRES = 1e6
-_STEP = 1e-6
+_STEP = 1e-3
 """alpha R (m2): a critical point that is R away from its obstacle moves on by 1000/R mm, R in mm, .."""
 
 _PER_TIME = 0.05
@@ -32,7 +32,7 @@ class KeepingClear(Term):
     """Sum of w/2 a_obs |alpha v - J_k S|^2 over the pairs of a link and an obstacle within its influence.
 
     J_k (3, n) is the Jacobian of the link's nearest point, its critical point, v the unit vector away from
-    the obstacle, alpha = 1e-6 m2 / R for every 50 ms of the way, R the distance (m; at least 20 mm).
+    the obstacle, alpha = 1e-3 m2 / R for every 50 ms of the way, R the distance (m; at least 20 mm).
     Displacements count in mm. Where one pair is near, w = 1: that is the criterion of Koch's monograph,
     section 7. Of several pairs at R_i that which is nearest, at R, counts most, w_i ~ (R / R_i)^4, all
     weights together as one; over the last quarter of the influence distance w rises from 0, so that nothing
