@@ -60,6 +60,8 @@ class Clearance:
 
     def __init__(self, distances: Distances) -> None:
         self.distances = distances
+        self._start: Array = np.zeros(0)
+        self._at_start: Array = np.zeros(0)
 
     def tick(self, q: Array, dt: float, reserve: float = RESERVE) -> TickClearance | None:
         """The floors of a tick of dt s that begins at posture q (n,); None where everything is far.
@@ -103,8 +105,7 @@ class Clearance:
         return TooNear(int(near.pairs[k]), float(near.distance[k]), float(floors[k]))
 
     def _within(self, q: Array) -> Near:
-        distances = self.distances
-        return distances.near(q, np.maximum(distances.influence, distances.margin + RESERVE))
+        return self.distances.near(q, within(self.distances, RESERVE))
 
     def floors(self, pairs: Numbers, start: Array, reserve: float = 0.0) -> Array:
         """Distance (P,) that pairs must keep in a motion from posture `start` (n,): margin and reserve, m.
@@ -112,7 +113,18 @@ class Clearance:
         What is nearer at the start may stay as near as it is.
         """
         least = self.distances.margin[pairs] + reserve
-        return np.asarray(np.minimum(least, self.distances.of(start, pairs).distance))
+        if not np.array_equal(start, self._start):
+            self._start, self._at_start = start.copy(), np.full(len(self.distances.pairs), np.nan)
+        unknown = pairs[np.isnan(self._at_start[pairs])]
+        if len(unknown):
+            self._at_start[unknown] = self.distances.of(start, unknown).distance
+        return np.asarray(np.minimum(least, self._at_start[pairs]))
+
+
+def within(distances: Distances, reserve: float) -> Array | None:
+    """From where on (K,), m, pairs may lack margin and reserve; None where influences contain that."""
+    least = distances.margin + reserve
+    return np.maximum(distances.influence, least) if np.any(least > distances.influence) else None
 
 
 class TickClearance:
@@ -122,6 +134,7 @@ class TickClearance:
         self._distances = distances
         self._q = q
         self._least = distances.margin + reserve
+        self._within = within(distances, reserve)
         self.near = distances.near(q)
         least = self._least[self.near.pairs]
         share = min(dt / APPROACH_TIME, 1.0)
@@ -144,12 +157,14 @@ class TickClearance:
 
         Pairs that were far at the start of the tick count with their margins.
         """
-        distances, least = self._distances, self._least
-        there = distances.near(self._q + whole, np.maximum(distances.influence, least))
-        floor = least.copy()
+        distances = self._distances
+        there = distances.near(self._q + whole, self._within)
+        if not len(there.pairs):
+            return True
+        floor = self._least.copy()
         floor[self.near.pairs] = self.floors
         short = there.distance < floor[there.pairs] - ALLOWANCE
-        if not np.any(short):
+        if not np.count_nonzero(short):
             return True
         pairs = np.union1d(self.near.pairs, there.pairs[short])
         self.floors = floor[pairs]
@@ -166,7 +181,6 @@ class TickClearance:
         distances = self._distances
         q = self._q + whole
         self.near = distances.of(q, self.near.pairs)
-        points = distances.jacobians(q, self.near)
-        self._gradient = np.einsum("pi,pij->pj", self.near.away, points)
+        self._gradient = distances.rates(q, self.near)
         self._looked_from = whole.copy()
         self._looks += 1
