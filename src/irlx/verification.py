@@ -90,7 +90,7 @@ def verify(
     if of_program is not None and header is not None and Path(of_program.file).name == header.cell_name:
         strict = of_program
     if strict is not None:
-        reference = Reference(strict.robot, strict.limits, strict.start, strict.relations)
+        reference = Reference(strict.robot, strict.limits, strict.start, strict.relations, strict.scene)
     elif header is not None:
         reference = _looked_up(header, beside, of_program)
     compare = (
@@ -127,7 +127,7 @@ def _looked_up(header: StreamHeader, beside: Path, of_program: Cell | None) -> R
             same = _same_limits(header, cell)
             if not same:
                 return Reference(cell.robot)
-            return Reference(cell.robot, cell.limits, cell.start, cell.relations)
+            return Reference(cell.robot, cell.limits, cell.start, cell.relations, cell.scene)
     if header.robot_model in robot_names():
         from irlx.cell.model import load_robot
 

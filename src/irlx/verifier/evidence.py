@@ -10,6 +10,7 @@ import numpy as np
 from irlx.blocks import MoveKind
 from irlx.robot.description import RobotDescription
 from irlx.robot.relation import JointRelation
+from irlx.scene.scene import Scene
 from irlx.streams.joint_stream import Floats
 from irlx.verifier.demands import Demand, Placer, demands_of
 from irlx.verifier.findings.tally import Tally
@@ -25,7 +26,8 @@ class Evidence:
 
     `robot` is None where none is known or where it is not the stream's robot; nothing is asked for by blocks
     that do not fit the rows (`blocks_fit`); `start` (n,) is the posture in
-    which its cell has it begin, None where no cell is given; `relations` between joints are its cell's.
+    which its cell has it begin, None where no cell is given; `relations` between joints are its cell's,
+    as is the `scene` around the robot, None where no cell is given.
     """
 
     outline: Outline
@@ -33,6 +35,7 @@ class Evidence:
     start: Floats | None = None
     relations: tuple[JointRelation, ...] = ()
     blocks_fit: bool = True
+    scene: Scene | None = None
 
     @cached_property
     def moves(self) -> list[MoveRows]:
