@@ -99,6 +99,6 @@ def _sum(first: Array, second: Array) -> Array:
     if first.ndim == second.ndim:
         return first + second
     whole, diagonal = (first, second) if first.ndim == 2 else (second, first)
-    added = whole.copy()
+    added: Array = whole.copy()
     added.flat[:: len(diagonal) + 1] += diagonal
     return added
