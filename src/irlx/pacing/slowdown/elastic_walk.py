@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,6 +85,10 @@ def elastic_walk(
             continue
         begin = easy.q - q[i] if easy.solved else np.zeros(start.size)
         found = _Stretch(model, solver, problem, room).solve(begin)
+        if found is None and keeping is not None:
+            # How fast the path itself leads near something is for the clock: the margins are left.
+            problem = problem._replace(clearance=_kept_clear(model, q[i], inf, reserve))
+            found = _Stretch(model, solver, problem, room).solve(np.zeros(start.size))
         if found is None:
             last = solver.solve(problem._replace(bounds=room.positions()))
             if not last.solved:
