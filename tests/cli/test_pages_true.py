@@ -17,10 +17,13 @@ from irlx.diagnostics.codes.run import RUN
 from irlx.diagnostics.codes.types import TYPES
 
 PAGES = Path(__file__).parents[2] / "docs" / "diagnostics"
-CODES = [code.id for group in (COMMAND, TYPES, DATA_LISTS, PACING, CLEARANCE, RUN, FILES, CELL) for code in group]
+CODES = [
+    code.id for group in (COMMAND, TYPES, DATA_LISTS, PACING, CLEARANCE, RUN, FILES, CELL) for code in group
+]
 IN_WORDS = {"IRL090", "IRL229", "IRL241", "IRL264", "IRL265", "IRL513", "IRL523", "IRL525", "IRL614"} | {
     "IRL550",
     "IRL553",
+    "IRL574",
     "IRL641",
     "IRL642",
     "IRL645",

@@ -101,7 +101,7 @@ def shape_of(rng: np.random.Generator, size: float) -> Shape:
         return float(size * rng.uniform(least, most))
 
     made = (
-        lambda: Point(),
+        Point,
         lambda: Sphere(length(0.03, 0.15)),
         lambda: Box((length(0.05, 0.4), length(0.05, 0.4), length(0.05, 0.4))),
         lambda: Cylinder(length(0.03, 0.1), length(0.1, 0.8)),
@@ -142,7 +142,9 @@ class _Drawing:
         rng, limits = self.rng, self.cell.limits
         n = self.cell.start.size
         speed = rng.uniform(1.0, 2.5, n) * np.where(self._slides, 0.5 * self.size, 1.0)
-        limits = limits.with_pair("speed", np.maximum(limits.speed_lower, -speed), np.minimum(limits.speed_upper, speed))
+        limits = limits.with_pair(
+            "speed", np.maximum(limits.speed_lower, -speed), np.minimum(limits.speed_upper, speed)
+        )
         free = np.full(n, np.inf)
         if rng.random() < 0.7:
             acceleration = speed * rng.uniform(2.0, 10.0, n)
@@ -239,9 +241,7 @@ class _Drawing:
 
     def _law(self) -> MotionLaw:
         fast = self.size * float(self.rng.uniform(0.1, 0.35))
-        return MotionLaw(
-            speed=fast, acc=4.0 * fast, speed_ori=1.0, acc_ori=3.0, speed_ptp=0.6, acc_ptp=0.6
-        )
+        return MotionLaw(speed=fast, acc=4.0 * fast, speed_ori=1.0, acc_ori=3.0, speed_ptp=0.6, acc_ptp=0.6)
 
     def _blocks(self, names: list[str]) -> list[Block]:
         rng = self.rng

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import NoReturn
-
 import numpy as np
 
-from irlx.blocks import AskAvoidingPosture, AskClearance
+from irlx.blocks import AskClearance
 from irlx.diagnostics import Place, report
 from irlx.language.obstacles import unknown_obstacle
 from irlx.pacing.errors import PacingError
-from irlx.pacing.situation import Situation
 from irlx.robot.kinematics import Kinematics
 from irlx.scene.distances import Distances
 from irlx.scene.obstacle import Obstacle
@@ -58,9 +55,3 @@ def _members(name: str, scene: Scene, place: Place) -> tuple[Obstacle, ...]:
         return scene.members(name)
     except KeyError:
         raise PacingError(unknown_obstacle(name, scene.names, place)) from None
-
-
-def avoiding_posture(question: AskAvoidingPosture, situation: Situation) -> NoReturn:
-    """The posture of a pose that keeps best clear of an obstacle. Raises PacingError, IRL590: not yet."""
-    what = "the function POSTURE with an obstacle"
-    raise PacingError(report("IRL590", situation.locate(question.origin), what=what))

@@ -131,7 +131,7 @@ def explain_tick(
     row = tick - rows.first_tick
     before = np.vstack([rows_before, rows.q])
     step, last_step = before[row + 2] - before[row + 1], before[row + 1] - before[row]
-    asked = rows.path.demands if rows.path is not None else ()
+    asked = rows.path.demands if rows.path is not None and not rows.passes_corner(row) else ()
     demand = asked[row] if row < len(asked) else None
     limiter, speed = StepLimiter(limits, dt), last_step / dt
     joints = _joints(rows, row, limiter, step, speed, names, prismatic)
@@ -189,6 +189,8 @@ def _way_of_pacing(rows: MotionRows, row: int) -> str:
         return "the robot stands"
     if rows.stops and row == len(rows) - 1:
         return "hold tick of a stop"
+    if rows.passes_corner(row):
+        return "row of a corner between a move of the joints and one along a path"
     if rows.path is None:
         return "row of a motion of the joints"
     return "row of a motion planned as a whole" if rows.path.planned else "ordinary tick"

@@ -91,8 +91,6 @@ _TOO_MANY = f"at most {WINDOW} moves are joined"
 
 def _apart(first: MoveBlock, second: MoveBlock) -> str:
     """Why two moves cannot be joined whatever their geometry, or ''."""
-    if (first.kind is MoveKind.PTP) is not (second.kind is MoveKind.PTP):
-        return "a move of the joints and one along a path do not join"
     for move in (first, second):
         if move.limits or move.criteria:
             return "a WITH clause holds for one of the two moves alone"
@@ -100,6 +98,18 @@ def _apart(first: MoveBlock, second: MoveBlock) -> str:
             continue
         if _draws(move):
             return "one of the two moves is to end in a posture"
+    if (first.kind is MoveKind.PTP) is (second.kind is MoveKind.PTP):
+        return ""
+    return _apart_in_kind(first, second)
+
+
+def _apart_in_kind(first: MoveBlock, second: MoveBlock) -> str:
+    """Why a move of the joints and one along a path cannot be joined, or ''."""
+    for move in (first, second):
+        if isinstance(move.target, JointIncrement):
+            return "joint increments count from the posture in which the move before has ended"
+        if move.law.duration is not None:
+            return "beside a move of the other kind TIME counts from stop to stop"
     return ""
 
 

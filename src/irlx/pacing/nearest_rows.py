@@ -29,8 +29,11 @@ class NearestRows:
     margin: Array
 
 
-def nearest_rows(clearance: Clearance | None, q: Array) -> NearestRows | None:
-    """What comes nearest at postures q (N, n); None where nothing is kept clear."""
+def nearest_rows(clearance: Clearance | None, q: Array, dt: float) -> NearestRows | None:
+    """What comes nearest at postures q (N, n), the first one dt s after the begin of the motion.
+
+    None where nothing is kept clear.
+    """
     if clearance is None:
         return None
     distances = clearance.distances
@@ -38,6 +41,7 @@ def nearest_rows(clearance: Clearance | None, q: Array) -> NearestRows | None:
     margins: list[float] = []
     pair, distance = np.full(len(q), FAR, dtype=np.int64), np.full(len(q), np.inf)
     for row, posture in enumerate(q):
+        clearance.after((row + 1) * dt)
         if distances.far(posture):
             continue
         near = distances.near(posture)

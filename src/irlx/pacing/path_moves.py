@@ -102,7 +102,7 @@ def _motion(
     handed: list[MotionRows | None] = [rows]
     if touched > 1:
         handed = handed_out(rows, moves[:touched], plan.ends)
-    return Motion(tuple(handed), in_force, rest)
+    return Motion(tuple(handed), in_force, rest, plan.rooms)
 
 
 def _rest(block: MoveBlock, plan: PlannedChain) -> MoveBlock:
@@ -161,7 +161,14 @@ def _rows(situation: Situation, block: MoveBlock, plan: PlannedChain, paced: Pac
 
 
 def _tool(situation: Situation, paced: PacedPath) -> tuple[Array, Array, Array, Array]:
-    """Distance (m) and angle (rad) of rows from the demands, and their tool poses."""
+    """Distance (m) and angle (rad) of rows from the demands, and their tool poses.
+
+    A dry run, whose rows nobody gets, takes the demands for them.
+    """
+    if situation.setup.resolution.is_coarse:
+        rotation, position = _wanted(paced.demands)
+        nothing = np.zeros(len(paced.q))
+        return nothing, nothing, position, rotation
     kinematics = situation.kinematics
     rotation, position = kinematics.tool_poses(paced.q)
     distance, angle = pose_errors(kinematics.task, _wanted(paced.demands), (rotation, position))

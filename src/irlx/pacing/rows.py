@@ -53,7 +53,8 @@ class MotionRows:
     a joint back; `s` (N,) path parameter of `length`; `iterations` Newton steps in all; `span` ticks that the
     rows of a dry run stand for, 0 where each is a tick;
     `limits` in force, None for the robot's own; `path`, None where no path was asked for; `nearest` what
-    comes nearest where something is kept clear.
+    comes nearest where something is kept clear. `corner_rows` so many of the first and of the last rows pass
+    a corner between joint space and a path (`Crossing`): they lie on no path.
     """
 
     block: MoveBlock | ReconfigureBlock | WaitBlock | PauseBlock
@@ -72,6 +73,7 @@ class MotionRows:
     stops: bool = True
     span: int = 0
     nearest: NearestRows | None = None
+    corner_rows: tuple[int, int] = (0, 0)
 
     def __len__(self) -> int:
         return int(self.q.shape[0])
@@ -80,6 +82,11 @@ class MotionRows:
     def ticks(self) -> int:
         """Ticks that the motion takes, its hold tick included."""
         return self.span or len(self)
+
+    def passes_corner(self, row: int) -> bool:
+        """Whether a row, counted from 0, lies in a corner between joint space and a path."""
+        first, last = self.corner_rows
+        return row < first or row >= len(self) - last
 
 
 def held(rows: Array) -> Array:
@@ -143,6 +150,8 @@ def _first_tick(rows: MotionRows, row: int) -> int:
     """The first tick that a row stands for; the last row, a hold, stands for one."""
     if row == len(rows):
         return rows.first_tick + rows.ticks
+    if rows.path is not None and row > 0:
+        return rows.path.demands[row - 1].tick + 1
     return rows.first_tick + round(row * (rows.ticks - 1) / (len(rows) - 1))
 
 

@@ -34,16 +34,40 @@ def told(clearance: Clearance, found: TooNear) -> dict[str, Any]:
 
 
 def check_rows(
-    clearance: Clearance | None, rows: Array, start: Array, first_tick: int, word: str, place: Place
+    clearance: Clearance | None,
+    rows: Array,
+    start: Array,
+    ticking: tuple[int, float],
+    word: str,
+    place: Place,
 ) -> None:
     """Check rows (N, n) of a motion from posture `start` (n,) that avoids nothing by itself.
 
-    Raises PacingError, IRL561, at the first row that comes too near to something.
+    `ticking`: number of the first row's tick, and time (s) from row to row. Raises PacingError, IRL561, at
+    the first row that comes too near to something.
     """
-    short = clearance.first_short(rows, start) if clearance is not None else None
+    first_tick, dt = ticking
+    elapsed = dt * np.arange(1.0, len(rows) + 1.0)
+    short = clearance.first_short(rows, start, elapsed) if clearance is not None else None
     if clearance is not None and short is not None:
         row, found = short
         raise PacingError(report("IRL561", place, word=word, tick=first_tick + row, **told(clearance, found)))
+
+
+def passed_by(
+    clearance: Clearance | None, rows: Array, ticking: tuple[int, float], place: Place
+) -> list[Diagnostic]:
+    """A warning, IRL564, where an obstacle that moves comes too near in the last of rows (N, n), a hold tick.
+
+    `ticking` as in `check_rows`.
+    """
+    if clearance is None or not clearance.distances.moves or len(rows) == 0:
+        return []
+    first_tick, dt = ticking
+    short = clearance.short(rows[-1], rows[-1], dt * len(rows))
+    if short is None:
+        return []
+    return [report("IRL564", place, tick=first_tick + len(rows) - 1, **told(clearance, short))]
 
 
 def standing(
@@ -56,7 +80,7 @@ def standing(
     found: list[Diagnostic] = []
     if clearance is None:
         return found
-    distances = clearance.distances
+    distances = clearance.after(0.0)
     near = distances.near(q, distances.margin)
     for pair, distance in zip(near.pairs.tolist(), near.distance.tolist(), strict=True):
         if distances.pairs[pair].other not in others:

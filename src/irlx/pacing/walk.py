@@ -75,12 +75,14 @@ def walk(
     for demand in demands:
         bounds = limiter.bounds(q, speed)
         target = solver.kinematics.target(demand.rotation, demand.position)
-        keeping = clearance.tick(q, limiter.dt) if clearance is not None else None
+        elapsed = len(rows) * limiter.dt
+        keeping = clearance.tick(q, limiter.dt, elapsed) if clearance is not None else None
         problem = TickProblem(target, q, bounds, criterion_of(demand), free, keeping)
         seed = seeds.next()
         solution = solver.solve(problem, seed, thorough)
-        if clearance is not None and keeping is None and solution.solved and clearance.nears(solution.q):
-            problem = problem._replace(clearance=clearance.watched_tick(q, limiter.dt))
+        unseen = clearance if keeping is None and solution.solved else None
+        if unseen is not None and unseen.nears(solution.q, elapsed + limiter.dt):
+            problem = problem._replace(clearance=unseen.watched_tick(q, limiter.dt, elapsed))
             solution = solver.solve(problem, seed, thorough)
         iterations += solution.iterations
         if not solution.solved:

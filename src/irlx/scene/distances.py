@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from irlx.robot.kinematics import Kinematics
 from irlx.scene.collision_shape import bounding_radius, collision_shape, pose_of
 from irlx.scene.levers import Levers
-from irlx.scene.obstacle import Obstacle
+from irlx.scene.trajectory import Trajectory
 from irlx.scene.watched_pair import WatchedPair
 from irlx.solids.shape import Solid
 
@@ -71,7 +71,8 @@ class Distances:
         self._bodies: list[int] = []
         self._radii: list[float] = []
         self._sizes: list[float] = []
-        self._moving: list[tuple[int, pin.SE3, Obstacle]] = []
+        self._moving: list[tuple[int, pin.SE3, Trajectory]] = []
+        self._speeds: list[float] = []
         self._first = np.array([self._add_of_link(p.link, p.solid) for p in pairs], dtype=np.intp)
         self._second = np.array([self._add_other(p) for p in pairs], dtype=np.intp)
         for first, second in zip(self._first, self._second, strict=True):
@@ -101,19 +102,31 @@ class Distances:
         bodies = np.array(self._bodies, dtype=np.intp)
         self._first_body = bodies[self._first] if len(pairs) else self._first
         self._second_body = bodies[self._second] if len(pairs) else self._second
-        self._time = 0.0
+        self._time = self._looked_at = 0.0
+        self._rates = np.array([self._speeds[k] for k in self._second])
+        self._fastest = float(np.max(self._rates, initial=0.0))
 
     def at_time(self, time: float) -> None:
         """Put the obstacles that move where they are at a `time` (s) of the run."""
         if not self._moving or time == self._time:
             return
-        raise NotImplementedError
+        self._time, self._here, self._all_near = time, None, None
+        for number, within, trajectory in self._moving:
+            self._model.geometryObjects[number].placement = trajectory.pose(time) * within
+
+    @property
+    def moves(self) -> bool:
+        """Whether any obstacle moves."""
+        return bool(self._moving)
 
     def far(self, q: Array) -> bool:
         """Whether it is certain without a look that no pair is within its influence at posture q (n,)."""
         if self._slack <= 0.0 or self._longest is None:
             return False
-        return bool(self._longest.dot(np.abs(q - self._last)) < self._slack)
+        moved = self._longest.dot(np.abs(q - self._last))
+        if self._moving:
+            moved += self._fastest * abs(self._time - self._looked_at)
+        return bool(moved < self._slack)
 
     def near(self, q: Array, within: Array | None = None) -> Near:
         """Pairs nearer than `within` (K,) m, by default their influence, at posture q (n,)."""
@@ -122,6 +135,9 @@ class Distances:
             return self._all_near
         reach = self.influence if within is None else within
         least = self._least - self._levers.moved(self._last, q)
+        if self._moving:
+            least = least - self._rates * abs(self._time - self._looked_at)
+            self._looked_at = self._time
         asked = (least < reach).nonzero()[0]
         found = self.of(q, asked)
         least[asked] = found.distance
@@ -218,7 +234,15 @@ class Distances:
             return self._add_of_link(pair.other, pair.other_solid)
         within = pose_of(pair.other_solid.placement)
         world = pose_of(pair.obstacle.placement) * within
-        return self._add((pair.other, False, id(pair.other_solid)), 0, world, pair.other_solid)
+        known = len(self._numbers)
+        number = self._add((pair.other, False, id(pair.other_solid)), 0, world, pair.other_solid)
+        if pair.obstacle.trajectory and number == known:
+            trajectory = Trajectory(pair.obstacle)
+            radius = float(np.linalg.norm(within.translation)) + bounding_radius(pair.other_solid.shape)
+            self._speeds[number] = trajectory.fastest(radius)
+            self._model.geometryObjects[number].placement = trajectory.pose(0.0) * within
+            self._moving.append((number, within, trajectory))
+        return number
 
     def _add(self, key: tuple[str, bool, int], joint: int, pose: pin.SE3, solid: Solid) -> int:
         number = self._numbers.get(key)
@@ -228,6 +252,7 @@ class Distances:
             number = int(self._model.addGeometryObject(pin.GeometryObject(name, joint, pose, shape)))
             self._numbers[key] = number
             self._bodies.append(joint)
+            self._speeds.append(0.0)
             size = bounding_radius(solid.shape)
             self._radii.append(float(np.linalg.norm(pose.translation)) + size)
             self._sizes.append(size)

@@ -24,5 +24,15 @@ CLEARANCE = (
         "{pair} are {distance} apart where the robot stands, inside the margin of {margin}",
         "moves keep them from coming nearer and widen the gap where they can",
     ),
+    warning(
+        "IRL564",
+        "while the robot stood, {pair} came within {distance} (tick {tick}), {floor} are kept",
+        "at rest nothing is avoided: let the move out of its way last until it has passed",
+    ),
+    warning(
+        "IRL565",
+        "the posture that POSTURE finds is not clear of {name}: {pair} are {distance} apart, not {floor}",
+        "another posture of the pose may be: lead the robot nearer to it before, or ask for another pose",
+    ),
 )
 """Codes of obstacles and links that come too near."""

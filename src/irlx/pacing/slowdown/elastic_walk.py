@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -73,21 +72,25 @@ def elastic_walk(
     q = np.empty((grid.intervals + 1, start.size))
     stretch = np.zeros(grid.intervals)
     q[0] = start
+    elapsed = 0.0
     for i in range(grid.intervals):
         target = targets[i + 1]
         room = _Room.at(model, q[i], (bounds[0][i + 1], bounds[1][i + 1]), reserve, float(grid.times[i]))
         criterion = criterion_of(float(grid.s[i + 1]), float(grid.s[i + 1] - grid.s[i])).begun(q[i])
-        keeping = _kept_clear(model, q[i], room.duration, reserve)
+        keeping = _kept_clear(model, q[i], room.duration, elapsed, reserve)
         problem = TickProblem(target, q[i], room.none(), criterion, model.free, keeping)
         easy = solver.solve(problem, thorough=False)
         if easy.solved and room.holds(easy.q - q[i]):
             q[i + 1] = rounded_inside(easy.q, model.limits)
+            elapsed += room.duration
             continue
         begin = easy.q - q[i] if easy.solved else np.zeros(start.size)
         found = _Stretch(model, solver, problem, room).solve(begin)
         if found is None and keeping is not None:
             # How fast the path itself leads near something is for the clock: the margins are left.
-            problem = problem._replace(clearance=_kept_clear(model, q[i], inf, reserve))
+            problem = problem._replace(
+                clearance=_kept_clear(model, q[i], room.duration, elapsed, reserve, False)
+            )
             found = _Stretch(model, solver, problem, room).solve(np.zeros(start.size))
         if found is None:
             last = solver.solve(problem._replace(bounds=room.positions()))
@@ -96,6 +99,7 @@ def elastic_walk(
             found = last.q - q[i], room.stretch_of(last.q - q[i])
         q[i + 1] = rounded_inside(q[i] + found[0], model.limits)
         stretch[i] = found[1]
+        elapsed += room.duration * (1.0 + found[1])
     return Passage(q, stretch)
 
 
@@ -245,9 +249,12 @@ def _many_unknowns(
     return target + rows @ z[:unknowns], max(float(z[unknowns]) / scale - offset, 0.0)
 
 
-def _kept_clear(model: Model, q: Array, duration: float, reserve: float) -> TickClearance | None:
+def _kept_clear(
+    model: Model, q: Array, duration: float, elapsed: float, reserve: float, paced: bool = True
+) -> TickClearance | None:
     """What a step from posture q (n,) in `duration` s must keep clear, with the reserve of a plan (m)."""
-    return model.clearance.tick(q, duration, reserve) if model.clearance is not None else None
+    clearance = model.clearance
+    return None if clearance is None else clearance.tick(q, duration, elapsed, reserve, paced)
 
 
 def _within_sides(sides: SideRows, least: float, most: float) -> tuple[float, float]:

@@ -93,8 +93,10 @@ def _timed(
     ):
         return None
     clearance = model.clearance
-    if clearance is not None and clearance.first_short(curve.at(places_between(grid)), q[0]) is not None:
-        return None
+    if clearance is not None:
+        places = places_between(grid)
+        if clearance.first_short(curve.at(places), q[0], grid.times_at(places)) is not None:
+            return None
     clock = plan_clock(clock_bounds(curve, limits, grid.rates, acc))
     return TimedCurve(curve, clock) if clock is not None else None
 

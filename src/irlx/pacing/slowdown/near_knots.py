@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from irlx.pacing.slowdown.grid import PathGrid
 from irlx.pacing.slowdown.model import Model
 
 Array = NDArray[np.float64]
@@ -31,7 +32,7 @@ class NearKnots:
         return np.asarray(self.room + np.einsum("mf,mf->m", self.rates, change[self.knots]))
 
 
-def near_knots(model: Model, q: Array, reserve: float) -> NearKnots | None:
+def near_knots(model: Model, grid: PathGrid, q: Array, reserve: float) -> NearKnots | None:
     """Pairs within 50 mm of their margins at the inner ones of postures q (N + 1, n); None: there are none.
 
     What is inside its margin at the first posture may stay as near as it is there.
@@ -42,7 +43,9 @@ def near_knots(model: Model, q: Array, reserve: float) -> NearKnots | None:
     distances = clearance.distances
     least = clearance.floors(np.arange(len(distances.pairs)), q[0], reserve)
     knots, room, rates = [], [], []
+    times = grid.times_at(grid.s)
     for knot in range(1, len(q) - 1):
+        clearance.after(float(times[knot]))
         if distances.far(q[knot]):
             continue
         near = distances.near(q[knot], np.maximum(least + _BAND, distances.influence))

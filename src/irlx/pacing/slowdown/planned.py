@@ -180,7 +180,7 @@ def _outside(model: Model, grid: PathGrid, q: Array) -> Refusal:
     lower, upper = model.limits.pair("position")
     if model.clearance is not None and np.all((q <= upper) & (q >= lower)):
         places = places_between(grid)
-        short = model.clearance.first_short(JointCurve(grid.s, q).at(places), q[0])
+        short = model.clearance.first_short(JointCurve(grid.s, q).at(places), q[0], grid.times_at(places))
         if short is not None:
             return Refusal(float(places[short[0]]), near=short[1])
     knot, joint = np.unravel_index(int(np.argmax(np.maximum(q - upper, lower - q))), q.shape)
@@ -225,7 +225,8 @@ def rows_on_clock(model: Model, timed: TimedCurve, ticking: Ticking, least: floa
         broken = excess.first
         if broken is None:
             if model.clearance is not None:
-                short = model.clearance.first_short(q, start)
+                elapsed = whole / rows * np.arange(1.0, rows + 1.0)
+                short = model.clearance.first_short(q, start, elapsed)
                 if short is not None:
                     return Refusal(demands[short[0]].s, near=short[1], row=short[0])
             return PlannedMotion(q, demands, timed, factor)

@@ -68,7 +68,7 @@ def relax(
     targets = model.targets(grid.poses)
     q, jacobians = walked, model.differences(walked, targets)[1]
     for _ in range(_OUTER_ROUNDS):
-        near = near_knots(model, q, reserve) if model.clearance is not None else None
+        near = near_knots(model, grid, q, reserve) if model.clearance is not None else None
         basis = null_spaces(jacobians)
         relaxation = _Relaxation(model, grid, q, basis, walked, bounds, smoothing, pinned, near)
         step = relaxation.step()

@@ -31,8 +31,8 @@ from irlx.verifier.tools import Pose
 from irlx.verifier.way import course_of
 
 _LED_AWAY = (
-    "a limit was met, or a RECONFIGURATION, a frozen joint, a criterion, joint values or another tool led"
-    " away from the posture"
+    "a limit was met, or a RECONFIGURATION, a frozen joint, a criterion, an obstacle, joint values or"
+    " another tool led away from the posture"
 )
 
 
