@@ -7,7 +7,7 @@ that share nothing with what made it; or it is refused by a code of the diagnost
   the start of a motion stays as near as it was.
 - The tool on its straight line, by the verifier's forward kinematics.
 - Limits and jumps by differences of the rows, from rest to rest.
-- No oscillation: see `turns`.
+- No oscillation: see `turns` and `flicker`.
 
 A failing scene is repeated by its seed, which is in its message.
 """
@@ -32,7 +32,11 @@ from irlx.verifier.geometry.forward import forward
 
 pytestmark = [pytest.mark.req("TRF-13"), pytest.mark.req("TRF-14")]
 
-QUICK, LONG = 24, 500
+QUICK = (0, 1, 4, 7, 8, 10, 13, 15, 17, 18, 19, 32, 33, 34, 37, 40, 152, 153, 155, 156, 157, 166, 179, 181)
+"""Seeds of scenes of all kinds that take little time."""
+
+LONG = 500
+MOST_TURNS, MOST_FLICKER = 12, 4
 REFUSALS = {
     "IRL343",
     "IRL345",
@@ -53,20 +57,37 @@ MARGIN_TOLERANCE, PATH_TOLERANCE, LIMIT_TOLERANCE = 1e-6, 1e-6, 1e-9
 TEXT = SourceText("drawn.irl", "-\n")
 
 
-def turns(q: np.ndarray, dt: float, limits) -> int:
-    """Times that the joint which does so most turns its acceleration round, a row after another.
+def sides(q: np.ndarray, dt: float, limits) -> np.ndarray:
+    """Which way each joint is accelerated in each row (N, n): 1, -1, or 0 for hardly at all.
 
-    Counted with a dead band: an acceleration counts where it exceeds a tenth of the largest of its joint
-    in this motion, and a hundredth of what takes that joint to its full speed within a second.
+    Rows q (N, n) from rest to rest. An acceleration counts where it exceeds a tenth of the largest of its
+    joint in the motion, and what takes that joint to its full speed in 20 s: the rest is noise.
     """
     v = np.diff(np.vstack([q[:1], q, q[-1:]]), axis=0) / dt
     a = np.diff(v, axis=0) / dt
     band = np.maximum(0.1 * np.max(np.abs(a), axis=0), 0.05 * limits.speed_upper)
+    return np.where(a > band, 1, np.where(a < -band, -1, 0))
+
+
+def turns(side: np.ndarray) -> int:
+    """Times that the joint which does so most turns its acceleration round.
+
+    A joint that starts, gives way, comes back and stops does so a few times, whatever the tick; one that
+    oscillates does it over and over. Drawn motions without obstacles do it up to 5 times.
+    """
     most = 0
-    for column, least in zip(a.T, band, strict=True):
-        sides = np.where(column > least, 1, np.where(column < -least, -1, 0))
-        held = sides[sides != 0]
+    for column in side.T:
+        held = column[column != 0]
         most = max(most, int(np.count_nonzero(np.diff(held))))
+    return most
+
+
+def flicker(side: np.ndarray) -> int:
+    """The longest row of ticks in which a joint is accelerated one way and the other in turn."""
+    most = 0
+    for column in (side[1:] * side[:-1] < 0).T:
+        ends = np.flatnonzero(np.diff(np.concatenate([[False], column, [False]]).astype(int)))
+        most = max(most, int(np.max(ends[1::2] - ends[::2], initial=0)))
     return most
 
 
@@ -79,6 +100,7 @@ class Judged:
     planned: int = 0
     near: int = 0
     turns: int = 0
+    flicker: int = 0
 
 
 def pacer_of(scene: DrawnScene) -> Pacer:
@@ -128,7 +150,12 @@ def judge(scene, block, rows: MotionRows, q: np.ndarray, obstacles: list[Obstacl
     room, near = least_room(setup.kinematics.description, obstacles, q)
     assert room >= -MARGIN_TOLERANCE, f"{where}: {-room:.3g} m too near"
     judged.near += near
-    judged.turns = max(judged.turns, turns(q, setup.dt, setup.limits))
+    side = sides(q, setup.dt, setup.limits)
+    judged.turns, judged.flicker = max(judged.turns, turns(side)), max(judged.flicker, flicker(side))
+    assert turns(side) <= MOST_TURNS, f"{where}: accelerations turn round {turns(side)} times"
+    assert flicker(side) <= MOST_FLICKER, (
+        f"{where}: accelerations turn round in {flicker(side)} ticks in turn"
+    )
 
 
 def assert_limits(q: np.ndarray, limits, dt: float, where: str) -> None:
@@ -190,3 +217,53 @@ def one_scene(seed: int) -> Judged:
     where = f"seed {seed}, {scene.name}, {1e3 * scene.setup.dt:g} ms, {', '.join(scene.told)}"
     run(scene, judged, where)
     return judged
+
+
+def test_the_measures_tell_an_oscillation():
+    class Limits:
+        speed_upper = np.array([2.0])
+
+    time = np.linspace(0.0, 1.0, 101)[:, None]
+    smooth = 0.5 * time**3 * (10.0 - 15.0 * time + 6.0 * time**2)
+    side = sides(smooth, 0.01, Limits)
+    assert (turns(side), flicker(side)) == (1, 0)
+    # A posture that alternates by a hundredth of a degree, and one that swings ten times a second.
+    noise = 1.7e-4 * (np.arange(101)[:, None] % 2) * (np.abs(time - 0.5) < 0.3)
+    assert flicker(sides(smooth + noise, 0.01, Limits)) > 30
+    swing = 2e-3 * np.sin(20.0 * np.pi * time)
+    side = sides(smooth + swing, 0.01, Limits)
+    assert turns(side) > MOST_TURNS
+    assert flicker(side) <= 1
+    # What rounding leaves is no oscillation.
+    rounded = smooth + 1e-9 * (np.arange(101)[:, None] % 2)
+    assert flicker(sides(rounded, 0.01, Limits)) == 0
+
+
+def in_turn(seeds) -> list[Judged]:
+    """Judge scenes; what they came to is printed."""
+    found = []
+    for seed in seeds:
+        judged = one_scene(seed)
+        print(seed, judged)
+        found.append(judged)
+    return found
+
+
+def assert_telling(found: list[Judged]) -> None:
+    """A campaign whose scenes are all refused, or all far from everything, tells nothing."""
+    done = [judged for judged in found if judged.ended == "done"]
+    assert len(done) > 0.4 * len(found)
+    assert sum(judged.near > 0 for judged in found) > 0.3 * len(found)
+    assert any(judged.ended in {"IRL560", "IRL561"} for judged in found)
+    assert any(judged.planned for judged in found)
+
+
+def test_drawn_scenes():
+    assert_telling(in_turn(QUICK))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("part", range(10))
+def test_many_drawn_scenes(part):
+    size = LONG // 10
+    assert_telling(in_turn(range(1000 + part * size, 1000 + (part + 1) * size)))

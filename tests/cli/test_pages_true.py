@@ -22,6 +22,7 @@ CODES = [
 ]
 IN_WORDS = {"IRL090", "IRL229", "IRL241", "IRL264", "IRL265", "IRL513", "IRL523", "IRL525", "IRL614"} | {
     "IRL550",
+    "IRL564",
     "IRL553",
     "IRL574",
     "IRL641",
