@@ -4,9 +4,9 @@
 
 Runs lines of the packaged arm7 there and back at 1 kHz, least motion, and prints the least and the median
 processor time in microseconds per emitted tick, everything from the demand to the checked row included. Cases
-take turns within a round. `--pink` installs Pink (PyPI: pin-pink) with its QP interface into a folder of its own,
-where it is not there yet, and has it follow the same line with a barrier over the four nearest pairs of solids, by
-DAQP, to the same tolerance of the pose: only its solver's loop is timed, no demand, check or row.
+take turns within a round. `--pink` installs Pink (PyPI: pin-pink) with its QP interface into a folder of its
+own, where it is not there yet, and has it follow the same line with a barrier over the four nearest pairs of
+solids, by DAQP, to the same tolerance of the pose: its solver's loop is timed, no demand, check or row.
 """
 
 from __future__ import annotations
