@@ -6,10 +6,11 @@ import pytest
 from irlx.cell.packaged import packaged_urdf
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.urdf import read_urdf
+from irlx.scene.collision_shape import bounding_radius
 from irlx.scene.distances import Distances
 from irlx.scene.obstacle import Obstacle
 from irlx.scene.scene import LinkClearance
-from irlx.scene.watched_pair import watched_pairs
+from irlx.scene.watched_pair import WatchedPair, watched_pairs
 from irlx.solids.placement import Placement
 from irlx.solids.shape import Box, Capsule, Cone, Cylinder, Halfspace, Point, Solid, Sphere
 
@@ -121,3 +122,32 @@ def test_looking_again_only_where_needed_changes_nothing(name):
         assert np.array_equal(near.distance, every.distance[expected])
         seen += len(expected)
     assert seen > 100
+
+
+DEEP = (
+    (Cylinder(0.05, 0.18), Box((0.2804311556752078, 0.17765279263391587, 0.36825674408640763))),
+    (Cylinder(0.06, 0.2), Cone(0.09820835125938107, 0.1562421154846486)),
+    (Cylinder(0.05, 0.11), Cylinder(0.04930882882831255, 0.7550724705060567)),
+)
+
+
+@pytest.mark.parametrize("shapes", [*DEEP, (Cylinder(0.05, 0.2), Halfspace())])
+def test_solids_deep_inside_each_other_have_distances(shapes):
+    # The search of the collision library ends at -1.8e308, or deeper than both solids are, now and then.
+    rng = np.random.default_rng(7)
+    link, other = shapes
+    arm = robot("planar3")
+    name = next(name for name in arm.description.solids if arm.body_of(name)[0] > 0)
+    for _ in range(300):
+        turn = rng.normal(size=4)
+        place = Placement(tuple(0.05 * rng.normal(size=3)), tuple(turn / np.linalg.norm(turn)))
+        body = Solid(link, place)
+        around = Obstacle("o", (Solid(other),), Placement((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)), 0.01, 0.1)
+        found = Distances(arm, [WatchedPair(name, body, "o", around.solids[0], 0.01, 0.1, around)])
+        near = found.of(np.zeros(3), np.arange(1))
+        largest = bounding_radius(link) + min(bounding_radius(other), 1.0)
+        assert -largest - 1e-12 <= near.distance[0] < 0.5
+        for values in (near.away, near.on_link, near.on_other):
+            assert np.all(np.abs(values) < 2.0)
+        assert np.linalg.norm(near.away[0]) == pytest.approx(1.0, abs=1e-6)
+        assert np.all(np.isfinite(found.jacobians(np.zeros(3), near)))

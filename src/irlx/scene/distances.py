@@ -26,11 +26,14 @@ _TOLERANCE = 1e-9
 _COARSER = (1e-8, 1e-7, 1e-6, 1e-5)
 """The same where solids overlap and the search gives up at less."""
 
-_NO_DISTANCE = -1e300
-
+_ENDLESS = 1e100
 _GUESS = np.array([1.0, 0.0, 0.0])
 _FIRST_VERTICES = np.zeros(2, dtype=np.int32)
-_WORLD = pin.ReferenceFrame.WORLD
+_CROSS = np.zeros((3, 9))
+"""A point times this is the matrix, row by row, that turns an angular velocity into the point's velocity."""
+_CROSS[0, [5, 7]] = 1.0, -1.0
+_CROSS[1, [2, 6]] = -1.0, 1.0
+_CROSS[2, [1, 3]] = 1.0, -1.0
 
 
 @dataclass(frozen=True)
@@ -57,7 +60,8 @@ class Distances:
     """Distances between watched pairs of solids.
 
     A pair is looked at again only where the joints have moved far enough since it was looked at last
-    (`Levers`); what is found does not depend on that. Not safe for use by several threads at once.
+    (`Levers`), and once in a posture; what is found does not depend on that. Not safe for use by several
+    threads at once.
     """
 
     def __init__(self, kinematics: Kinematics, pairs: Sequence[WatchedPair]) -> None:
@@ -69,6 +73,7 @@ class Distances:
         self._numbers: dict[tuple[str, bool, int], int] = {}
         self._bodies: list[int] = []
         self._radii: list[float] = []
+        self._sizes: list[float] = []
         self._moving: list[tuple[int, pin.SE3, Trajectory]] = []
         self._speeds: list[float] = []
         self._first = np.array([self._add_of_link(p.link, p.solid) for p in pairs], dtype=np.intp)
@@ -86,6 +91,20 @@ class Distances:
         self._slack = -np.inf
         self._longest = self._levers.longest
         self._here: Array | None = None
+        sizes = np.array(self._sizes)
+        # Half-spaces have no size; what they give is taken for as long as it is a distance at all.
+        deepest = -(sizes[self._first] + sizes[self._second]) if len(pairs) else np.zeros(0)
+        self._deepest = np.where(np.isfinite(deepest), deepest, -_ENDLESS)
+        self._known = np.zeros(len(pairs), dtype=np.bool_)
+        self._found = np.empty((len(pairs), 10))
+        self._all_near: Near | None = None
+        self._columns: Array = self._data.J
+        self._carries = np.zeros((kinematics.model.njoints, kinematics.joints))
+        for joint in range(1, kinematics.model.njoints):
+            self._carries[joint, [above - 1 for above in kinematics.model.supports[joint] if above]] = 1.0
+        bodies = np.array(self._bodies, dtype=np.intp)
+        self._first_body = bodies[self._first] if len(pairs) else self._first
+        self._second_body = bodies[self._second] if len(pairs) else self._second
         self._time = self._looked_at = 0.0
         self._rates = np.array([self._speeds[k] for k in self._second])
         self._fastest = float(np.max(self._rates, initial=0.0))
@@ -94,7 +113,7 @@ class Distances:
         """Put the obstacles that move where they are at a `time` (s) of the run."""
         if not self._moving or time == self._time:
             return
-        self._time, self._here = time, None
+        self._time, self._here, self._all_near = time, None, None
         for number, within, trajectory in self._moving:
             self._model.geometryObjects[number].placement = trajectory.pose(time) * within
 
@@ -114,74 +133,112 @@ class Distances:
 
     def near(self, q: Array, within: Array | None = None) -> Near:
         """Pairs nearer than `within` (K,) m, by default their influence, at posture q (n,)."""
+        everything = within is None
+        if everything and self._all_near is not None and _same(q, self._last):
+            return self._all_near
         reach = self.influence if within is None else within
         least = self._least - self._levers.moved(self._last, q)
         if self._moving:
             least = least - self._rates * abs(self._time - self._looked_at)
             self._looked_at = self._time
-        asked = np.flatnonzero(least < reach)
+        asked = (least < reach).nonzero()[0]
         found = self.of(q, asked)
         least[asked] = found.distance
         self._least, self._last = least, q.copy()
-        self._slack = float(np.min(least - self.influence, initial=np.inf))
+        self._slack = float((least - self.influence).min(initial=np.inf))
         close = found.distance < reach[asked]
-        return found if np.all(close) else found.chosen(close)
+        found = found if np.count_nonzero(close) == len(asked) else found.chosen(close)
+        self._all_near = found if everything else None
+        return found
 
     def of(self, q: Array, pairs: Numbers) -> Near:
         """These pairs at posture q (n,), however far."""
-        count = len(pairs)
-        distance, away = np.empty(count), np.empty((count, 3))
-        on_link, on_other = np.empty((count, 3)), np.empty((count, 3))
-        if count:
+        if len(pairs):
             self._place(q)
-        for k, pair in enumerate(pairs.tolist()):
-            # Pinocchio begins where the last search ended: bits would depend on what was asked before.
-            request = self._requests[pair]
-            request.cached_gjk_guess, request.cached_support_func_guess = _GUESS, _FIRST_VERTICES
-            result = pin.computeDistance(self._model, self._geometry, pair)
-            if result.min_distance < _NO_DISTANCE:
-                result = self._depth(pair)
-            distance[k], away[k] = result.min_distance, -result.normal
-            on_link[k], on_other[k] = result.getNearestPoint1(), result.getNearestPoint2()
-        return Near(pairs, distance, away, on_link, on_other)
+            for pair in pairs[~self._known[pairs]].tolist():
+                self._look(pair)
+        found = self._found[pairs]
+        return Near(pairs, found[:, 0], found[:, 1:4], found[:, 4:7], found[:, 7:])
 
-    def _depth(self, pair: int) -> Any:
+    def _look(self, pair: int) -> None:
+        found = self._found[pair]
+        self._search(pair, found)
+        if not found[0] >= self._deepest[pair]:
+            self._search_coarsely(pair, found)
+        if not found[0] >= self._deepest[pair]:
+            self._mend(pair, found)
+        self._known[pair] = True
+
+    def _search(self, pair: int, found: Array) -> None:
+        # Pinocchio begins where the last search ended: bits would depend on what was asked before.
+        request = self._requests[pair]
+        request.cached_gjk_guess, request.cached_support_func_guess = _GUESS, _FIRST_VERTICES
+        result = pin.computeDistance(self._model, self._geometry, pair)
+        found[0] = result.min_distance
+        found[1:4] = result.normal
+        np.negative(found[1:4], out=found[1:4])
+        found[4:7] = result.getNearestPoint1()
+        found[7:] = result.getNearestPoint2()
+
+    def _search_coarsely(self, pair: int, found: Array) -> None:
         """How deep an overlap is, where rounding ends the search at the usual tolerance without a result."""
         request = self._requests[pair]
         for request.epa_tolerance in _COARSER:
-            request.cached_gjk_guess, request.cached_support_func_guess = _GUESS, _FIRST_VERTICES
-            result = pin.computeDistance(self._model, self._geometry, pair)
-            if result.min_distance >= _NO_DISTANCE:
+            self._search(pair, found)
+            if found[0] >= self._deepest[pair]:
                 break
         request.epa_tolerance = _TOLERANCE
-        return result
+
+    def _mend(self, pair: int, found: Array) -> None:
+        """What solids that overlap are to each other where the search has ended at what they cannot be.
+
+        Deep inside each other it may. Then the spheres about both solids count, or the half-space, with
+        their middles as nearest points.
+        """
+        first, second = int(self._first[pair]), int(self._second[pair])
+        link, other = self._geometry.oMg[first], self._geometry.oMg[second]
+        way = link.translation - other.translation
+        length, size = float(np.linalg.norm(way)), self._sizes[second]
+        if np.isfinite(size):
+            away = way / length if length > 0.0 else np.array([0.0, 0.0, 1.0])
+        else:
+            away, size = other.rotation[:, 2], 0.0
+        found[0] = min(float(way.dot(away)) - size - self._sizes[first], 0.0)
+        found[1:4], found[4:7], found[7:] = away, link.translation, other.translation
 
     def jacobians(self, q: Array, near: Near) -> Array:
         """d(point on link - point on other)/dq (P, 3, n), both points fixed on their bodies, at posture q."""
-        found = np.empty((len(near.pairs), 3, q.size))
-        if len(near.pairs):
-            self._place(q)
-        for k, pair in enumerate(near.pairs.tolist()):
-            found[k] = self._point_jacobian(self._bodies[self._first[pair]], near.on_link[k])
-            second = self._bodies[self._second[pair]]
-            if second:
-                found[k] -= self._point_jacobian(second, near.on_other[k])
+        if not len(near.pairs):
+            return np.zeros((0, 3, q.size))
+        self._place(q)
+        found = self._point_jacobians(self._first_body[near.pairs], near.on_link)
+        second = self._second_body[near.pairs]
+        if np.count_nonzero(second):
+            found -= self._point_jacobians(second, near.on_other)
         return found
 
-    def _point_jacobian(self, joint: int, point: Array) -> Array:
-        if joint == 0:
-            return np.zeros((3, self.kinematics.joints))
-        whole = pin.getJointJacobian(self.kinematics.model, self._data, joint, _WORLD)
-        x, y, z = point.tolist()
-        turned = np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
-        return np.asarray(whole[:3] + turned @ whole[3:])
+    def rates(self, q: Array, near: Near) -> Array:
+        """d(distance)/dq (P, n) at posture q: the same along `away`."""
+        if not len(near.pairs):
+            return np.zeros((0, q.size))
+        return np.asarray(np.matmul(near.away[:, None, :], self.jacobians(q, near))[:, 0, :])
+
+    def _point_jacobians(self, bodies: Numbers, points: Array) -> Array:
+        """Jacobians (P, 3, n) of points (P, 3) in the world, each fixed on one of the bodies (P,)."""
+        turned = points.dot(_CROSS).reshape(-1, 3)
+        found = turned.dot(self._columns[3:]).reshape(-1, 3, self.kinematics.joints)
+        found += self._columns[:3]
+        found *= self._carries[bodies][:, None, :]
+        return np.asarray(found)
 
     def _place(self, q: Array) -> None:
-        if self._here is not None and np.array_equal(q, self._here):
+        if self._here is not None and _same(q, self._here):
             return
         pin.computeJointJacobians(self.kinematics.model, self._data, q)
         pin.updateGeometryPlacements(self.kinematics.model, self._data, self._model, self._geometry)
+        self._columns = self._data.J
         self._here = q.copy()
+        self._known[:] = False
 
     # ---- building
 
@@ -213,5 +270,11 @@ class Distances:
             self._numbers[key] = number
             self._bodies.append(joint)
             self._speeds.append(0.0)
-            self._radii.append(float(np.linalg.norm(pose.translation)) + bounding_radius(solid.shape))
+            size = bounding_radius(solid.shape)
+            self._radii.append(float(np.linalg.norm(pose.translation)) + size)
+            self._sizes.append(size)
         return number
+
+
+def _same(first: Array, second: Array) -> bool:
+    return first is second or np.count_nonzero(first == second) == second.size

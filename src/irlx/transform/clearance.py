@@ -63,6 +63,8 @@ class Clearance:
         self.distances = distances
         self.begin = begin
         self._at_start: Near | None = None
+        self._start: Array = np.zeros(0)
+        self._start_distance: Array = np.zeros(0)
 
     def beginning(self, time: float) -> Clearance:
         """The same for a motion that begins at a `time` (s)."""
@@ -74,22 +76,23 @@ class Clearance:
         return self.distances
 
     def tick(
-        self, q: Array, dt: float, elapsed: float = 0.0, reserve: float = RESERVE
+        self, q: Array, dt: float, elapsed: float = 0.0, reserve: float = RESERVE, paced: bool = True
     ) -> TickClearance | None:
         """The floors of a tick of dt s that begins at posture q (n,), `elapsed` s after the motion has begun.
 
+        What is not `paced` may come down to its margin at once.
         None where everything is far; where a step from there comes near something, `nears` tells.
         """
         if self.after(elapsed).far(q):
             self._at_start = None if elapsed == 0.0 else self._at_start
             return None
-        return self._tick(q, dt, elapsed, reserve)
+        return self._tick(q, dt, elapsed, reserve, paced)
 
     def watched_tick(self, q: Array, dt: float, elapsed: float) -> TickClearance:
         """The same where something may come near, however far it is at the start of the tick."""
-        return self._tick(q, dt, elapsed, RESERVE)
+        return self._tick(q, dt, elapsed, RESERVE, True)
 
-    def _tick(self, q: Array, dt: float, elapsed: float, reserve: float) -> TickClearance:
+    def _tick(self, q: Array, dt: float, elapsed: float, reserve: float, paced: bool) -> TickClearance:
         distances = self.after(elapsed)
         if elapsed == 0.0:
             self._at_start = distances.near(q, distances.margin + _NEAR_MARGIN)
@@ -98,7 +101,7 @@ class Clearance:
         if self._at_start is not None:
             inside = self._at_start.pairs
             lowest[inside] = np.minimum(least[inside], self._at_start.distance)
-        return TickClearance(distances, q, dt, (least, lowest), self.begin + elapsed)
+        return TickClearance(distances, q, dt, (least, lowest), self.begin + elapsed, paced)
 
     def nears(self, q: Array, elapsed: float) -> bool:
         """Whether a tick that began without floors must not end at q (n,) unseen."""
@@ -150,8 +153,7 @@ class Clearance:
         return TooNear(int(near.pairs[k]), float(near.distance[k]), float(floors[k]))
 
     def _within(self, q: Array) -> Near:
-        distances = self.distances
-        return distances.near(q, np.maximum(distances.influence, distances.margin + RESERVE))
+        return self.distances.near(q, within(self.distances, self.distances.margin + RESERVE))
 
     def floors(self, pairs: Numbers, start: Array, reserve: float = 0.0) -> Array:
         """Distance (P,) that pairs must keep in a motion from posture `start` (n,): margin and reserve, m.
@@ -159,15 +161,31 @@ class Clearance:
         What is nearer at the start may stay as near as it is.
         """
         least = self.distances.margin[pairs] + reserve
-        self.after(0.0)
-        return np.asarray(np.minimum(least, self.distances.of(start, pairs).distance))
+        if not np.array_equal(start, self._start):
+            self._start = start.copy()
+            self._start_distance = np.full(len(self.distances.pairs), np.nan)
+        unknown = pairs[np.isnan(self._start_distance[pairs])]
+        if len(unknown):
+            self._start_distance[unknown] = self.after(0.0).of(start, unknown).distance
+        return np.asarray(np.minimum(least, self._start_distance[pairs]))
+
+
+def within(distances: Distances, least: Array) -> Array | None:
+    """From where on (K,), m, pairs may be nearer than `least` (K,); None where influences contain that."""
+    return np.maximum(distances.influence, least) if np.any(least > distances.influence) else None
 
 
 class TickClearance:
     """Floors (P,) of the pairs of one tick, and the rows that they are at an iterate."""
 
     def __init__(
-        self, distances: Distances, q: Array, dt: float, least: tuple[Array, Array], time: float
+        self,
+        distances: Distances,
+        q: Array,
+        dt: float,
+        least: tuple[Array, Array],
+        time: float,
+        paced: bool = True,
     ) -> None:
         """A tick of dt s from posture q (n,) at a `time` (s) of the run.
 
@@ -178,9 +196,10 @@ class TickClearance:
         distances.at_time(time)
         self._q = q
         self._lowest = least[1]
+        self._within = within(distances, self._lowest)
         self.near = distances.near(q)
         pairs, found = self.near.pairs, self.near.distance
-        share = min(dt / APPROACH_TIME, 1.0)
+        share = min(dt / APPROACH_TIME, 1.0) if paced else 1.0
         lost = found - share * (found - least[0][pairs])
         self.floors = np.where(found > least[0][pairs], lost, least[1][pairs])
         self._looked_from = np.zeros_like(q)
@@ -201,13 +220,15 @@ class TickClearance:
 
         Pairs that were far at the start of the tick count with their margins.
         """
-        distances, least = self._distances, self._lowest
+        distances = self._distances
         distances.at_time(self._end)
-        there = distances.near(self._q + whole, np.maximum(distances.influence, least))
-        floor = least.copy()
+        there = distances.near(self._q + whole, self._within)
+        if not len(there.pairs):
+            return True
+        floor = self._lowest.copy()
         floor[self.near.pairs] = self.floors
         short = there.distance < floor[there.pairs] - ALLOWANCE
-        if not np.any(short):
+        if not np.count_nonzero(short):
             return True
         pairs = np.union1d(self.near.pairs, there.pairs[short])
         self.floors = floor[pairs]
@@ -225,7 +246,6 @@ class TickClearance:
         distances.at_time(self._end)
         q = self._q + whole
         self.near = distances.of(q, self.near.pairs)
-        points = distances.jacobians(q, self.near)
-        self._gradient = np.einsum("pi,pij->pj", self.near.away, points)
+        self._gradient = distances.rates(q, self.near)
         self._looked_from = whole.copy()
         self._looks += 1

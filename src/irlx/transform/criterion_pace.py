@@ -22,6 +22,7 @@ STRAIGHT = 1e-3
 _PATH_NEARLY_MET = 1e-3
 _LATE = 6
 _LATE_NEARLY_MET = 0.05
+_LATE_SHARE = 0.4
 _LEAST_SHARE = 0.05
 _LARGEST_SHARE = 2.0
 _NO_DIFFERENCE = 1e-3
@@ -57,6 +58,9 @@ class CriterionPace:
 
         `twist` (6,) is what is left to the pose before the step, `hessian` H, (n,) or (n, n).
         """
+        late = self._steps >= _LATE
+        if late and not self._nearly_met(twist):
+            return _LATE_SHARE
         if self._asked is None or self._taken is None or not self._nearly_met(twist):
             return 1.0
         if self._taken.shape != d.shape:

@@ -86,6 +86,12 @@ def elastic_walk(
             continue
         begin = easy.q - q[i] if easy.solved else np.zeros(start.size)
         found = _Stretch(model, solver, problem, room).solve(begin)
+        if found is None and keeping is not None:
+            # How fast the path itself leads near something is for the clock: the margins are left.
+            problem = problem._replace(
+                clearance=_kept_clear(model, q[i], room.duration, elapsed, reserve, False)
+            )
+            found = _Stretch(model, solver, problem, room).solve(np.zeros(start.size))
         if found is None:
             last = solver.solve(problem._replace(bounds=room.positions()))
             if not last.solved:
@@ -244,11 +250,11 @@ def _many_unknowns(
 
 
 def _kept_clear(
-    model: Model, q: Array, duration: float, elapsed: float, reserve: float
+    model: Model, q: Array, duration: float, elapsed: float, reserve: float, paced: bool = True
 ) -> TickClearance | None:
     """What a step from posture q (n,) in `duration` s must keep clear, with the reserve of a plan (m)."""
     clearance = model.clearance
-    return None if clearance is None else clearance.tick(q, duration, elapsed, reserve)
+    return None if clearance is None else clearance.tick(q, duration, elapsed, reserve, paced)
 
 
 def _within_sides(sides: SideRows, least: float, most: float) -> tuple[float, float]:

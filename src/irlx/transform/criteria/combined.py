@@ -73,8 +73,8 @@ class _Begun(Criterion):
         self._base = base
         self._share = share
         own = base.hessian()
-        size = float(np.sum(hessian if hessian.ndim == 1 else np.diag(hessian)))
-        self._scale = float(np.sum(own)) / size
+        size = float((hessian if hessian.ndim == 1 else hessian.diagonal()).sum())
+        self._scale = float(own.sum()) / size
         self._linear = linear
         self._added = _sum(hessian, -share * own)
         self._hessian = self._scale * hessian
@@ -99,4 +99,6 @@ def _sum(first: Array, second: Array) -> Array:
     if first.ndim == second.ndim:
         return first + second
     whole, diagonal = (first, second) if first.ndim == 2 else (second, first)
-    return whole + np.diag(diagonal)
+    added: Array = whole.copy()
+    added.flat[:: len(diagonal) + 1] += diagonal
+    return added

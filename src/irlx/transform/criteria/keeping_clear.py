@@ -74,17 +74,18 @@ class KeepingClear(Term):
         distances = self._distances
         near = distances.near(q)
         pushing = self._pushing[near.pairs]
-        near = near if np.all(pushing) else near.chosen(pushing)
+        near = near if np.count_nonzero(pushing) == len(pushing) else near.chosen(pushing)
         if not len(near.pairs):
             return np.zeros(q.size), np.zeros((q.size, q.size)), 0.0
         away = np.maximum(near.distance, _NEAREST)
         influence = distances.influence[near.pairs]
         inside = (influence - away) / (_RAMP * (influence - distances.margin[near.pairs]))
-        inside = np.clip(inside, 0.0, 1.0)
+        inside = np.minimum(np.maximum(inside, 0.0), 1.0)
         rise = inside * inside * (3.0 - 2.0 * inside)
-        weight = rise * (np.min(away) / away) ** _FALL
-        weight = OBSTACLE_WEIGHT * _SQUARE_MILLIMETRES * weight / max(float(np.sum(weight)), 1.0)
+        weight = rise * (away.min() / away) ** _FALL
+        weight = OBSTACLE_WEIGHT * _SQUARE_MILLIMETRES * weight / max(float(weight.sum()), 1.0)
         points = distances.jacobians(q, near)
-        step = np.einsum("pi,pij->pj", near.away, points)
-        linear = -np.asarray((weight * _STEP / away) @ step)
-        return linear, np.einsum("p,pij,pik->jk", weight, points, points), float(np.max(rise))
+        pulls = (weight * _STEP / away)[:, None] * near.away
+        linear = -pulls.reshape(-1).dot(points.reshape(-1, q.size))
+        rows = (np.sqrt(weight)[:, None, None] * points).reshape(-1, q.size)
+        return linear, rows.T.dot(rows), float(rise.max())
