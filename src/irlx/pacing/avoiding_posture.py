@@ -53,7 +53,7 @@ def _rest_point(situation: Situation, clearance: Clearance, start: Array, limits
     """Posture (n,) at which ticks at the tool pose of `start` (n,) come to rest."""
     kinematics, q = situation.kinematics, start
     target = kinematics.target(*kinematics.tool_pose(start))
-    term = Weighted(KeepingClear(clearance.distances), 1.0)
+    term = Weighted(KeepingClear(clearance.distances, situation.free), 1.0)
     criterion = Combined(Posture(situation.setup.weights, start), (term,), _TICK)
     for _ in range(_MOST_TICKS):
         keeping = clearance.tick(q, _TICK)

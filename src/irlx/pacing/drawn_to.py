@@ -91,7 +91,7 @@ def term_of(
     added = _added_terms(situation, block, plan, limits)
     clearance = situation.clearance
     if clearance is not None and any(pair.obstacle is not None for pair in clearance.distances.pairs):
-        added = (*added, Weighted(KeepingClear(clearance.distances), 1.0))
+        added = (*added, Weighted(KeepingClear(clearance.distances, situation.free), 1.0))
     return term.with_terms(added, plan.programmed)
 
 

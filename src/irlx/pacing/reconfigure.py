@@ -35,6 +35,7 @@ from irlx.transform.qp.solver import QpSolver
 Array = NDArray[np.float64]
 
 _WIDENINGS = (4.0, 16.0, 64.0)
+_NO_WAY = 1e-10
 
 
 @dataclass(frozen=True)
@@ -68,7 +69,7 @@ def reconfigured(
     free = model.free & (_either_way(limits, "speed") > 0.0) & (_either_way(limits, "acceleration") > 0.0)
     mobile = replace(model, limits=limits, free=free)
     flow = posture_flow(model.kinematics, q, konf, model.weights, limits, free, qp)
-    if len(flow.points) == 1:
+    if float(np.sum(np.abs(np.diff(flow.points, axis=0)))) <= _NO_WAY:
         return Reconfigured(flow, None, ~free)
     found = _planned(mobile, flow, _ticking(mobile, q, dt, place, resolution), first_tick, place)
     return Reconfigured(flow, _motion_rows(model, block, q, found, dt, first_tick), ~free)

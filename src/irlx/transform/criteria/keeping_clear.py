@@ -23,6 +23,9 @@ _STEP = 1e-3
 _PER_TIME = 0.05
 """.. in each time (s) of this length."""
 
+_FASTEST = 1.0
+"""Joint speed (rad/s, m/s) that a push may ask for at the programmed pace."""
+
 _NEAREST = 0.02
 _RAMP = 0.25
 _FALL = 4
@@ -36,13 +39,16 @@ class KeepingClear(Term):
     Displacements count in mm. Where one pair is near, w = 1: that is the criterion of Koch's monograph,
     section 7. Of several pairs at R_i that which is nearest, at R, counts most, w_i ~ (R / R_i)^4, all
     weights together as one; over the last quarter of the influence distance w rises from 0, so that nothing
-    jumps.
+    jumps. Where the tool's pose lets joints do little for it, alpha is less (`_pace`).
     """
 
     name = "keeping clear"
 
-    def __init__(self, distances: Distances) -> None:
+    def __init__(self, distances: Distances, free: NDArray[np.bool_]) -> None:
+        """Of the pairs of `distances`, joints moving that are `free` (n,)."""
         self._distances = distances
+        self._kinematics = distances.kinematics
+        self._free = free
         self._pushing = np.array([pair.obstacle is not None for pair in distances.pairs], dtype=np.bool_)
         self._q: Array | None = None
         self._found: tuple[Array, Array, float] | None = None
@@ -85,7 +91,28 @@ class KeepingClear(Term):
         weight = rise * (away.min() / away) ** _FALL
         weight = OBSTACLE_WEIGHT * _SQUARE_MILLIMETRES * weight / max(float(weight.sum()), 1.0)
         points = distances.jacobians(q, near)
-        pulls = (weight * _STEP / away)[:, None] * near.away
+        pulls = (weight * self._pace(q, near.away, points, _STEP / away))[:, None] * near.away
         linear = -pulls.reshape(-1).dot(points.reshape(-1, q.size))
         rows = (np.sqrt(weight)[:, None, None] * points).reshape(-1, q.size)
         return linear, rows.T.dot(rows), float(rise.max())
+
+    def _pace(self, q: Array, away: Array, points: Array, alpha: Array) -> Array:
+        """alpha (P,), less where the joints would have to move fast for it with the tool held at posture q.
+
+        In the null space N of the tool's Jacobian the rate g = N' J_k' v opens the gap fastest; along g the
+        sum is least for a step of alpha |g|^3 / |J_k N g|^2, which is kept below `_FASTEST` in 50 ms. A point
+        next to the tool, which these joints hardly move, would else be worth any motion of them.
+        """
+        _, jacobian = self._kinematics.here(q)
+        free, m = self._free, jacobian.shape[0]
+        held = jacobian[:, free].T
+        if held.shape[0] <= m:
+            return np.zeros_like(alpha)
+        basis = np.linalg.qr(held, mode="complete")[0][:, m:]
+        moves = points[:, :, free] @ basis
+        gain = np.matmul(away[:, None, :], moves)[:, 0, :]
+        moved = np.matmul(moves, gain[:, :, None])[:, :, 0]
+        length = np.sqrt((gain * gain).sum(axis=1))
+        asked = alpha * length**3
+        most = _FASTEST * _PER_TIME * (moved * moved).sum(axis=1)
+        return np.where(asked > most, alpha * most / np.maximum(asked, 1e-300), alpha)
