@@ -55,7 +55,7 @@ def test_with_the_option_every_link_keeps_the_margin() -> None:
     found = distances("window")
     assert least(found) >= MARGIN
     # It is no detour around the wall: three links get through, and close to the frame.
-    assert least(found) < 0.021
+    assert least(found) < 0.04
     assert run_of("window").summary.clearance.distance == pytest.approx(least(found), abs=1e-5)
 
 

@@ -60,7 +60,7 @@ def test_facts_of_all_experiments(command) -> None:
     assert "different values of joints 2, 3 1, 1" in told
     assert "nearest shape, plain, mm -116.5" in told
     assert "nearest shape, clear, mm 972.193" in told
-    assert "limits met (ticks), clear 10+ 76, 9+ 26" in told
+    assert "limits met (ticks), clear 10+ 81, 9+ 36" in told
 
 
 def test_without_matplotlib_one_line_and_the_facts(command, tmp_path) -> None:
