@@ -1,6 +1,7 @@
 """programs/combined: all redundancy options in one program; which of them governs in which move.
 
-Judged from the rows alone: the tool's Jacobian comes from differences of the verifier's forward kinematics.
+Judged from the rows alone: the tool's Jacobian comes from differences of the verifier's forward kinematics,
+distances from the URDF and the cell read anew (tests/support/nearness.py).
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from irlx.cell.load import load_cell
 from irlx.promises import CLOSURE
 from irlx.verifier.geometry.forward import forward
 from irlx.verifier.geometry.rotations import rotation_vectors
+from nearness import nearest
 
 FOLDER = Path(__file__).parents[1] / "programs" / "combined"
 UNITS = np.array([1e-3, 1e-3, *[np.pi / 180.0] * 6])
@@ -176,6 +178,32 @@ def test_limits_hold_where_they_are_on_and_a_clause_for_its_move_alone(run: irlx
     use = np.max(np.abs(run.qdd[switched]) / acceleration)
     assert use > 0.9
     assert len(moves) == 12
+
+
+def nearest_by_obstacle(run: irlx.Run) -> dict[str, np.ndarray]:
+    """Distance (M,) m of the arm from the wall and from the frame in the rows of the circle."""
+    circle = next(r.block.id for r in run.stream.records if getattr(r.block, "course", None) is not None)
+    found: dict[str, np.ndarray] = {}
+    for (_, other), rows in nearest(run, FOLDER / "combined.toml").items():
+        name = "window" if other.startswith("window") else other
+        found[name] = np.minimum(found.get(name, np.inf), rows)
+    return {name: rows[run.block == circle] for name, rows in found.items()}
+
+
+@pytest.mark.req("TRF-13")
+def test_wall_and_window_are_kept_clear_of_where_the_plain_run_comes_too_near(run, tmp_path: Path) -> None:
+    for name in ("combined.toml", "points.dat"):
+        (tmp_path / name).write_text((FOLDER / name).read_text(encoding="utf-8"), encoding="utf-8")
+    lines = (FOLDER / "combined.irl").read_text(encoding="utf-8").splitlines(keepends=True)
+    left = [line for line in lines if not line.lstrip().startswith("OBSTACLE")]
+    assert len(left) == len(lines) - 4
+    (tmp_path / "combined.irl").write_text("".join(left), encoding="utf-8")
+    plain, clear = nearest_by_obstacle(irlx.run(tmp_path / "combined.irl")), nearest_by_obstacle(run)
+    for name, margin in (("ściana_1", 0.015), ("window", 0.020)):
+        assert clear[name].min() >= margin - 1e-6
+        assert plain[name].min() < margin - 1e-3
+    assert run.summary.clearance.other == "window_top"
+    assert run.summary.clearance.distance == pytest.approx(clear["window"].min(), abs=1e-5)
 
 
 def test_it_tells_the_return(run: irlx.Run) -> None:

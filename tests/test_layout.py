@@ -10,6 +10,7 @@ ORDER = (
     "diagnostics",
     "language",
     "blocks",
+    "solids",
     "robot",
     "scene",
     "interpreter",

@@ -10,13 +10,14 @@ from pathlib import Path
 import pytest
 
 import irlx
-from drawn_programs import write_program
+from drawn_programs import KINDS, MIXED, write_program
 
 QUICK, LONG = range(24), range(1000, 2000)
 REFUSALS = {
     "IRL345",
     "IRL421",
     "IRL422",
+    "IRL424",
     "IRL427",
     "IRL428",
     "IRL429",
@@ -30,9 +31,9 @@ REFUSALS = {
 }
 
 
-def outcome(folder: Path, seed: int) -> str:
-    """Run and verify a program; the code of its refusal, or ''."""
-    write_program(folder, seed)
+def outcome(folder: Path, seed: int, kinds: tuple[str, ...] = KINDS) -> tuple[str, int]:
+    """Run and verify a program; the code of its refusal or '', how many corners pass between PTP and path."""
+    write_program(folder, seed, kinds)
     code = refused = ""
     try:
         run = irlx.run(folder / "drawn.irl")
@@ -43,7 +44,7 @@ def outcome(folder: Path, seed: int) -> str:
     report = irlx.verify(run, program=folder / "drawn.irl", cell=folder / "drawn.toml")
     failed = [f"{check.name}: {check.text}" for check in report.failed if check.name != "complete"]
     assert failed == [], failed
-    return code
+    return code, sum(note.code == "IRL436" for note in run.diagnostics)
 
 
 @pytest.mark.req("QA-05")
@@ -56,3 +57,20 @@ def test_drawn_programs(tmp_path, seed) -> None:
 @pytest.mark.parametrize("seed", LONG)
 def test_many_drawn_programs(tmp_path, seed) -> None:
     outcome(tmp_path, seed)
+
+
+@pytest.mark.req("MOT-06")
+@pytest.mark.parametrize("seed", QUICK)
+def test_drawn_programs_of_ptps_beside_paths(tmp_path, seed) -> None:
+    outcome(tmp_path, seed, MIXED)
+
+
+@pytest.mark.req("MOT-06")
+def test_some_of_them_are_joined(tmp_path) -> None:
+    assert sum(outcome(tmp_path, seed, MIXED)[1] for seed in list(QUICK)[:6]) > 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", LONG)
+def test_many_drawn_programs_of_ptps_beside_paths(tmp_path, seed) -> None:
+    outcome(tmp_path, seed, MIXED)

@@ -20,6 +20,8 @@ SLIDE, LAST = 9, 10
 BASIC: Ranges = ((-180, 180), (-150, 0), (-180, 0), (0, 180), (-180, 0), (-180, 0), (-180, 180), (-60, 60))
 BASIC += ((-180, 180), (-500, 500), (-20, 60))
 RAISED: Ranges = (*BASIC[:LAST], (0, 60))
+WIDE: Ranges = ((-180, 180), (-150, 90), (-180, 60), (0, 240), (-240, 0), (-240, 60), (-240, 240), (-90, 90))
+WIDE += ((-180, 180), (-700, 700), (-90, 90))
 SPEEDS: Ranges = (*((-50, 50),) * 9, (-500, 500), (-25, 25))
 ACCELERATIONS: Ranges = (*((-350, 350),) * 9, (-50_000, 50_000), (-350, 350))
 
@@ -43,6 +45,10 @@ class Experiment:
     title: str
     variants: tuple[Variant, ...]
     facts: Callable[..., Facts]
+    distance: Callable[[irlx.Run], Array] | None = None
+    """Of a run the distance (N,) mm that is drawn below the joints, if any."""
+    kept: float = 0.0
+    """The distance that is to be kept, mm."""
 
 
 def values(rows: Array) -> Array:
@@ -183,6 +189,70 @@ def facts_6_5(speed: irlx.Run, frozen: irlx.Run) -> Facts:
     }
 
 
+POINT, BOOM_RADIUS = np.array([5.4, 0.0, 6.6]), 0.13
+"""The obstacle of experiment 6.6 and the radius of arm 4, m in the world."""
+BOOM = ((0.0, 0.0, 1.3), (-0.2, 0.0, 0.6), (6.0, 0.0, -0.3), (-4.0, 0.0, -0.3))
+"""Arms 1 to 4 of the arm table, m. Each ends at the joint of its number: 1 about z, 2 and 3 about y."""
+
+
+def boom(q: Array) -> tuple[Array, Array]:
+    """Where the axis of arm 4 begins and ends at postures (N, 11): (N, 3) m in the world each."""
+    turn, lean = q[:, 0], np.zeros(len(q))
+    at = np.zeros((len(q), 3)) + BOOM[0]
+    for arm, joint in zip(BOOM[1:], (None, 1, 2), strict=True):
+        lean = lean if joint is None else lean + q[:, joint]
+        along = np.cos(lean) * arm[0] + np.sin(lean) * arm[2]
+        up = np.cos(lean) * arm[2] - np.sin(lean) * arm[0]
+        begin, at = at, at + np.column_stack([np.cos(turn) * along, np.sin(turn) * along, up])
+    return begin, at
+
+
+def from_axis(run: irlx.Run) -> Array:
+    """Distance (N,) m of the point from the axis of arm 4."""
+    begin, end = boom(run.q)
+    axis, there = end - begin, POINT - begin
+    share = np.clip(np.sum(axis * there, axis=1) / np.sum(axis * axis, axis=1), 0.0, 1.0)
+    return np.asarray(np.linalg.norm(there - share[:, None] * axis, axis=1))
+
+
+def from_shape(run: irlx.Run) -> Array:
+    """Distance (N,) m of the point from the cylinder of arm 4, below 0 as deep as it is inside."""
+    begin, end = boom(run.q)
+    length = np.linalg.norm(end - begin, axis=1)
+    along = np.sum((end - begin) * (POINT - begin), axis=1) / length
+    aside = np.linalg.norm(POINT - begin - along[:, None] * (end - begin) / length[:, None], axis=1)
+    beyond_end, beyond_side = np.abs(along - 0.5 * length) - 0.5 * length, aside - BOOM_RADIUS
+    outside = np.hypot(np.maximum(beyond_end, 0.0), np.maximum(beyond_side, 0.0))
+    return np.asarray(outside + np.minimum(np.maximum(beyond_end, beyond_side), 0.0))
+
+
+def facts_6_6(plain: irlx.Run, clear: irlx.Run) -> Facts:
+    """A line past a point: without and with OBSTACLE."""
+    near, kept = from_shape(plain), from_shape(clear)
+    contact = plain.t[near <= 0.0]
+    hold = float(clear.t[1] - clear.t[0])
+    return {
+        "duration without the hold tick, s": f"{clear.summary.duration - hold:.2f}",
+        "path error, clear, m and rad": (
+            f"{clear.summary.path_position_error:.0e}, {clear.summary.path_orientation_error:.0e}"
+        ),
+        "nearest shape, plain, mm": f"{1000.0 * near.min():.1f}",
+        "nearest axis, plain, mm": f"{1000.0 * from_axis(plain).min():.1f}",
+        "contact, plain, s": f"{contact[0]:.2f}..{contact[-1]:.2f}",
+        "shape at the start, mm": f"{1000.0 * kept[0]:.3f}",
+        "nearest shape, clear, mm": f"{1000.0 * kept.min():.3f}",
+        "axis at the start and nearest, clear, mm": (
+            f"{1000.0 * from_axis(clear)[0]:.1f}, {1000.0 * from_axis(clear).min():.1f}"
+        ),
+        "limits met (ticks), plain": met(plain),
+        "limits met (ticks), clear": met(clear),
+        "joint 10, plain, mm": span(values(plain.q)[:, SLIDE]),
+        "joint 10, clear, mm": span(values(clear.q)[:, SLIDE]),
+        "end against plain": ranked(values(clear.q[-1:] - plain.q[-1:])[0], 6, ".1f", (SLIDE,)),
+        "posture at the end, clear": ", ".join(f"{value:.1f}" for value in values(clear.q[-1:])[0]),
+    }
+
+
 FAST = Variant("speed limits", "square_speed.irl", speed=SPEEDS)
 SOFT = Variant("with the limit", "square_accel.irl", acceleration=ACCELERATIONS)
 EXPERIMENTS = {
@@ -217,5 +287,15 @@ EXPERIMENTS = {
         "joints 2 and 3 frozen with speed limits and 0° to 60° for joint 11 (frozen), against 6.2",
         (FAST, Variant("2 and 3 frozen", "square_frozen.irl", position=RAISED, speed=SPEEDS)),
         facts_6_5,
+    ),
+    "6.6": Experiment(
+        "a line past a point: without (plain) and with OBSTACLE (clear)",
+        (
+            Variant("least motion", "line.irl", "line.toml", position=WIDE),
+            Variant("with OBSTACLE", "obstacle.irl", "line.toml", position=WIDE),
+        ),
+        facts_6_6,
+        lambda run: 1000.0 * from_shape(run),
+        972.193,
     ),
 }

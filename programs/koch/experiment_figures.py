@@ -1,4 +1,7 @@
-"""Joint curves of an experiment: position, speed and acceleration over time, one row of diagrams a joint."""
+"""Joint curves of an experiment: position, speed and acceleration over time, one row of diagrams a joint.
+
+A distance that an experiment is about has a row of its own below them.
+"""
 
 from __future__ import annotations
 
@@ -48,11 +51,12 @@ def draw_experiment(
     """
     first, last = window or (0.0, float(runs[0].t[-1]))
     with mpl.rc_context(STYLE):
-        height = HEAD + FOOT + ROW * len(joints)
+        count = len(joints) + (experiment.distance is not None)
+        height = HEAD + FOOT + ROW * count
         figure = Figure(figsize=(WIDTH, height))
-        diagrams = figure.subplots(len(joints), 3, sharex=True, squeeze=False)
+        diagrams = figure.subplots(count, 3, sharex=True, squeeze=False)
         shown = [[values(rows) for rows in (run.q, run.qd, run.qdd)] for run in runs]
-        for row, joint in zip(diagrams, joints, strict=True):
+        for row, joint in zip(diagrams, joints, strict=False):
             for kind, axes in enumerate(row):
                 curves = [rows[kind][:, joint - 1] for rows in shown]
                 axes.set_xlim(first, last)
@@ -68,6 +72,8 @@ def draw_experiment(
             axes.set_title(f"{KINDS[kind]}, {units}", fontsize=8.5)
         for axes in diagrams[-1]:
             axes.set_xlabel("time, s")
+        if experiment.distance is not None:
+            draw_distance(diagrams[-1], diagrams[-2], experiment, runs)
         add_heading(figure, name, experiment, runs, height)
         figure.subplots_adjust(0.075, FOOT / height, 0.985, 1.0 - HEAD / height, 0.19, 0.16)
         metadata = {"Date": None} if picture.suffix == ".svg" else {}
@@ -89,6 +95,23 @@ def draw_curves(axes: Axes, runs: Sequence[irlx.Run], curves: Sequence[np.ndarra
     axes.set_ylim(least - margin, most + margin)
     axes.set_xlim(first, last)
     axes.grid(True, color="#eceff3", linewidth=0.5)
+
+
+def draw_distance(
+    row: Sequence[Axes], above: Sequence[Axes], experiment: Experiment, runs: Sequence[irlx.Run]
+) -> None:
+    """One wide diagram in the place of a row: the distance of all variants, and what is to be kept."""
+    assert experiment.distance is not None
+    place = row[0].get_subplotspec()
+    for axes in above:
+        axes.tick_params(labelbottom=True)
+    for axes in row[1:]:
+        axes.remove()
+    row[0].set_subplotspec(place.get_gridspec()[place.rowspan.start, :])
+    draw_curves(row[0], runs, [experiment.distance(run) for run in runs], 0)
+    row[0].axhline(0.0, color="#555555", linewidth=0.6)
+    row[0].axhline(experiment.kept, color=LIMIT, linewidth=0.8, linestyle=(0, (6, 3)))
+    row[0].set_ylabel("distance, mm")
 
 
 def draw_limits(axes: Axes, variants: Sequence[Variant], joint: int, kind: int) -> None:

@@ -1,4 +1,4 @@
-"""The monograph's experiments 6.1 to 6.5: runs the variants of each, prints their facts, draws their joints.
+"""The monograph's experiments 6.1 to 6.6: runs the variants of each, prints their facts, draws their joints.
 
 python programs/koch/experiments.py 6.1                          facts and a picture at a tick of 50 ms
 python programs/koch/experiments.py all --tick 20 25 50 --facts  facts of all, a column for each tick
@@ -47,7 +47,7 @@ def main() -> int:
 
 def arguments() -> argparse.Namespace:
     """The command line."""
-    parser = argparse.ArgumentParser(description="Experiments 6.1 to 6.5 of the monograph's closed square.")
+    parser = argparse.ArgumentParser(description="Experiments 6.1 to 6.6 of the monograph.")
     parser.add_argument("experiment", choices=[*EXPERIMENTS, "all"])
     parser.add_argument(
         "--tick", type=float, nargs="+", default=[50.0], metavar="MS", help="ticks; the first one is drawn"

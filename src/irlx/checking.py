@@ -11,7 +11,7 @@ from irlx.interpreter.support import unsupported
 from irlx.language import tree
 from irlx.language.data_lists import in_order
 from irlx.language.suppression import BY_MOTION, unused_finding, without_ignored
-from irlx.program import ProgramError, analyse_file
+from irlx.program import Program, ProgramError, analyse_with_program
 
 if TYPE_CHECKING:
     from irlx.job import InputsGiven
@@ -36,15 +36,15 @@ def check(
     """
     joints, of_cell = _cell_findings(cell) if cell is not None else (None, [])
     try:
-        analysis = analyse_file(program, cell, joints)
+        analysis, ready = analyse_with_program(program, cell, joints)
     except ProgramError as error:
         return list(error.diagnostics)
     found = list(analysis.diagnostics)
     if isinstance(analysis.tree, tree.Program):
         later = unsupported(analysis.tree, analysis.source, analysis.data_lists, analysis.modules)
         moves = motion and not any(one.is_error for one in (*found, *later, *of_cell))
-        if moves:
-            in_motion, of_cell = _motion_findings(program, cell, max_steps, inputs, files)
+        if moves and ready is not None:
+            in_motion, of_cell = _motion_findings(ready, cell, max_steps, inputs, files)
             later = [*later, *in_motion]
         kept, unused = without_ignored(later, analysis.ignores)
         found += kept
@@ -58,7 +58,7 @@ def check(
 
 
 def _motion_findings(
-    program: PathLike,
+    program: Program,
     cell: PathLike | None,
     max_steps: int | None,
     inputs: InputsGiven,

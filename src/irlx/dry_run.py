@@ -7,6 +7,8 @@ from dataclasses import replace
 from math import ceil
 
 from irlx.blocks import (
+    AskAvoidingPosture,
+    AskClearance,
     AskNearestPosture,
     AskPosture,
     Block,
@@ -95,9 +97,15 @@ class _DryExecution(Execution):
                 self._cautions[key] = caution
 
     def _answer(self, question: Question) -> tuple[float, ...]:
-        if self._lost is not None and isinstance(question, AskPosture | AskNearestPosture):
+        if self._lost is not None and self._needs_posture(question):
             raise self._end(question.origin)
         return super()._answer(question)
+
+    def _needs_posture(self, question: Question) -> bool:
+        """Whether an answer depends on where the robot stands, or on when it gets there."""
+        if isinstance(question, AskClearance):
+            return self.job.cell.scene.moves
+        return isinstance(question, AskPosture | AskNearestPosture | AskAvoidingPosture)
 
     def _all(self, groups: Sequence[tuple[Block, ...]]) -> Iterator[Executed]:
         for group in groups:

@@ -20,6 +20,7 @@ from irlx.interpreter.channels.channels import Channels, Told
 from irlx.interpreter.channels.pieces import InputGiven
 from irlx.interpreter.interpret import Interpretation
 from irlx.job import InputsGiven, Job, PathLike, header_of, kinematics_of, prepare
+from irlx.language.suppression import without_ignored
 from irlx.pacing.correction.corrector import CorrectedRow, Corrector
 from irlx.pacing.correction.share import CORRECTION_SHARE
 from irlx.pacing.correction.tally import Tally
@@ -69,6 +70,7 @@ class Execution:
             inputs=job.inputs,
             resolution=resolution,
             planned_share=planned_share,
+            scene=cell.scene,
         )
         self.kinematics = setup.kinematics
         self._pacer = Pacer(setup, self._locate)
@@ -102,7 +104,7 @@ class Execution:
 
     def _carried_out(self) -> Generator[Executed, None, None]:
         """What becomes of the blocks; the program runs ahead of them while its moves pass their targets."""
-        ahead = Lookahead(self._locate, self._pacer.notes)
+        ahead = Lookahead(self._locate, self._pacer.notes, obstacles_move=self.job.cell.scene.moves)
         source, reply = self._interpreted(self.channels), None
         with closing(source):
             while True:
@@ -284,7 +286,6 @@ def run(
 
 def execute(execution: Execution, progress: Progress | None = None, explain_tick: int | None = None) -> Run:
     """Run a prepared job to its end; see `run`."""
-    job = execution.job
     recording = execution.recording()
     explanation: TickExplanation | None = None
     try:
@@ -295,19 +296,22 @@ def execute(execution: Execution, progress: Progress | None = None, explain_tick
             if progress is not None:
                 progress(executed.block, recording.duration)
     except IrlxError as error:
-        known = (*_warnings(job), *execution.warnings)
+        known = _told(execution)
         partial = recording.finish(False, (*known, *error.diagnostics))
         partial = replace(partial, explanation=explanation, output=execution.channels.output)
         raise RunError((*error.diagnostics, *known), partial) from error
     except KeyboardInterrupt as interrupt:
-        partial = recording.finish(False, (*_warnings(job), *execution.warnings))
+        partial = recording.finish(False, _told(execution))
         raise RunInterrupted(replace(partial, output=execution.channels.output)) from interrupt
-    finished = recording.finish(True, (*_warnings(job), *execution.warnings))
+    finished = recording.finish(True, _told(execution))
     return replace(finished, explanation=explanation, output=execution.channels.output)
 
 
-def _warnings(job: Job) -> tuple[Diagnostic, ...]:
-    return (*job.program.diagnostics, *job.cell.warnings)
+def _told(execution: Execution) -> tuple[Diagnostic, ...]:
+    """Warnings of a run so far, but those of its motion that comments of the program ask to ignore."""
+    program, cell = execution.job.program, execution.job.cell
+    kept, _ = without_ignored(execution.warnings, program.ignores)
+    return (*program.diagnostics, *cell.warnings, *kept)
 
 
 def stream(

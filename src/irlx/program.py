@@ -10,7 +10,8 @@ from functools import partial
 from pathlib import Path
 
 from irlx.cell.find import find_cell, is_file
-from irlx.cell.frame_names import frame_names
+from irlx.cell.frame_names import cell_table, frame_names
+from irlx.cell.obstacle_names import obstacle_names
 from irlx.diagnostics import Diagnostic, IrlxError, Place, SourceText, report
 from irlx.diagnostics.near_files import near_files
 from irlx.language import tree
@@ -18,6 +19,7 @@ from irlx.language.analysis import Analysis, CellJoints, CellNames, DataListReso
 from irlx.language.data_lists import ImportedList
 from irlx.language.modules import ImportedModule, ModuleProblem
 from irlx.language.source import decode_source
+from irlx.language.suppression import Ignore
 from irlx.language.tree.nodes import Name
 
 PathLike = str | os.PathLike[str]
@@ -56,6 +58,7 @@ class Program:
 
     `data_lists` are those of the program itself, `modules` all that it needs, each behind those that it
     imports. `sha256` is that of the file's bytes; it covers lists and modules as well, see `digest_of_all`.
+    `ignores` are what comments ask to ignore and only a run or a look at what can be executed finds.
     """
 
     path: Path
@@ -65,6 +68,7 @@ class Program:
     sha256: str
     data_lists: tuple[DataListFile, ...] = ()
     modules: tuple[ModuleFile, ...] = ()
+    ignores: tuple[Ignore, ...] = ()
 
     @property
     def name(self) -> str:
@@ -95,10 +99,16 @@ def load(path: PathLike, cell: PathLike | None = None) -> Program:
     analysis = _analysis(file, content, cell, files)
     if analysis.has_errors or not isinstance(analysis.tree, tree.Program):
         raise ProgramError(_why_no_program(analysis))
+    return _program(file, content, analysis.tree, analysis, files)
+
+
+def _program(file: Path, content: bytes, root: tree.Program, analysis: Analysis, files: _Beside) -> Program:
     lists = tuple(files.lists.file_of(found) for found in analysis.data_lists)
     modules = tuple(files.modules)
     digest = digest_of_all(hashlib.sha256(content).hexdigest(), lists, modules)
-    return Program(file, analysis.source, analysis.tree, analysis.diagnostics, digest, lists, modules)
+    return Program(
+        file, analysis.source, root, analysis.diagnostics, digest, lists, modules, analysis.ignores
+    )
 
 
 def digest_of_all(program: str, lists: Sequence[DataListFile], modules: Sequence[ModuleFile] = ()) -> str:
@@ -130,11 +140,20 @@ def analyse_file(
 
     None: those of the cell that a run would find. Raises ProgramError where the file cannot be read.
     """
+    return analyse_with_program(path, cell, joints)[0]
+
+
+def analyse_with_program(
+    path: PathLike, cell: PathLike | None = None, joints: tuple[str, ...] | None = None
+) -> tuple[Analysis, Program | None]:
+    """What `analyse_file` gives, and the program that `load` would give where it is one without errors."""
     file = Path(path)
-    if joints is None:
-        found = partial(_found_joints, file)
-        return _analysis(file, read_file(file), cell, _Beside(file), found, lints=True)
-    return _analysis(file, read_file(file), cell, _Beside(file), joints, lints=True)
+    content, files = read_file(file), _Beside(file)
+    known = partial(_found_joints, file) if joints is None else joints
+    analysis = _analysis(file, content, cell, files, known, lints=True)
+    if analysis.has_errors or not isinstance(analysis.tree, tree.Program):
+        return analysis, None
+    return analysis, _program(file, content, analysis.tree, analysis, files)
 
 
 def cell_path(program: Program, given: PathLike | None) -> Path:
@@ -195,6 +214,7 @@ class _Beside:
         self.modules: list[ModuleFile] = []
         self.findings: list[Diagnostic] = []
         self.names: tuple[str, ...] = ()
+        self.obstacles: tuple[str, ...] | None = None
         self._open = [program]
         self._done: dict[Path, Analysis] = {}
 
@@ -224,7 +244,8 @@ class _Beside:
             source = decode_source(str(path), content)
         except IrlxError as error:
             raise ModuleProblem("IRL261", module=name, path=path, cause=error.reason.message) from None
-        analysis = analyse(source, self, lambda _: self.names, self.lists)
+        obstacles = lambda _: self.obstacles  # noqa: E731
+        analysis = analyse(source, self, lambda _: self.names, self.lists, obstacles=obstacles)
         self.findings += analysis.diagnostics
         if isinstance(analysis.tree, tree.Module):
             lists = tuple(self.lists.file_of(found) for found in analysis.data_lists)
@@ -249,9 +270,18 @@ def _analysis(
         files.names = _found_names(path, root) if cell is None else frame_names(Path(cell))
         return files.names
 
+    def obstacles(root: tree.Program | tree.Module) -> tuple[str, ...] | None:
+        of_cell = _found_cell(path, root) if cell is None else Path(cell)
+        # A cell that is no TOML has no names to miss: what is wrong with it is told when it is loaded.
+        if of_cell is not None and cell_table(of_cell):
+            files.obstacles = obstacle_names(of_cell)
+        return files.obstacles
+
     try:
         text = decode_source(str(path), content)
-        analysis = analyse(text, files, cell_names, files.lists, joints=joints, lints=lints)
+        analysis = analyse(
+            text, files, cell_names, files.lists, joints=joints, obstacles=obstacles, lints=lints
+        )
     except IrlxError as error:
         raise ProgramError(error.diagnostics) from error
     found = (*analysis.diagnostics, *files.findings)

@@ -54,6 +54,15 @@ def rounding_allowance(q: NDArray[np.float64], dt: float) -> tuple[float, float]
 CONDITION = 1e-6
 """Largest amount by which a row breaks a constraint of the cell, in the unit of its first joint, rad or m."""
 
+# ---- The robot keeps clear of obstacles, and of itself
+
+CLEARANCE = 1e-9
+"""What a distance may lack to the margin, m: rounding of poses and of the search for the nearest points, some
+1e-11 at arm's length. Shapes need nothing: cylinders are round, and a mesh is the triangles of its file."""
+
+STARTED_INSIDE = 2e-6
+"""By how much a pair that is inside its margin when a motion begins may come nearer in that motion, m."""
+
 # ---- A closed path under CYCLICSTART ends in the posture it began with
 
 CLOSURE = 1e-6

@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from irlx.blocks import (
+    AskAvoidingPosture,
+    AskClearance,
     AskInput,
     AskInputChange,
     AskJointBounds,
@@ -88,7 +90,7 @@ def verify(
     if of_program is not None and header is not None and Path(of_program.file).name == header.cell_name:
         strict = of_program
     if strict is not None:
-        reference = Reference(strict.robot, strict.limits, strict.start, strict.relations)
+        reference = Reference(strict.robot, strict.limits, strict.start, strict.relations, strict.scene)
     elif header is not None:
         reference = _looked_up(header, beside, of_program)
     compare = (
@@ -125,7 +127,7 @@ def _looked_up(header: StreamHeader, beside: Path, of_program: Cell | None) -> R
             same = _same_limits(header, cell)
             if not same:
                 return Reference(cell.robot)
-            return Reference(cell.robot, cell.limits, cell.start, cell.relations)
+            return Reference(cell.robot, cell.limits, cell.start, cell.relations, cell.scene)
     if header.robot_model in robot_names():
         from irlx.cell.model import load_robot
 
@@ -183,6 +185,17 @@ def _no_text() -> str:
     raise Unanswerable
 
 
+_ONLY_OF_THE_MACHINE = (
+    AskPostureOf,
+    AskNearestPosture,
+    AskAvoidingPosture,
+    AskClearance,
+    AskLastMove,
+    AskJointBounds,
+)
+"""Questions about what only the machine can say."""
+
+
 def _recorded(question: AskInput | AskInputChange, outline: Outline, done: int) -> tuple[float, ...]:
     """What the stream says of inputs, `done` of its blocks being behind: what was read, how long was waited.
 
@@ -215,8 +228,8 @@ def _replayed(program: Program, cell: Cell, outline: Outline, max_steps: int) ->
         except StopIteration:
             return
         reply = None
-        if isinstance(item, AskPostureOf | AskNearestPosture | AskLastMove | AskJointBounds):
-            # What only the machine can say, no stream tells.
+        if isinstance(item, _ONLY_OF_THE_MACHINE):
+            # No stream tells.
             raise Unanswerable
         if isinstance(item, AskPosture):
             records = outline.records

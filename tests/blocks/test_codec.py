@@ -24,6 +24,7 @@ from irlx.blocks import (
     MotionLaw,
     MoveBlock,
     MoveKind,
+    ObstacleBlock,
     Origin,
     PathCourse,
     PoseIncrement,
@@ -79,6 +80,7 @@ blocks = st.one_of(
     st.builds(FreezeBlock, joints=st.lists(st.integers(1, 9)).map(tuple), **common),
     st.builds(CyclicBlock, active=st.booleans(), **common),
     st.builds(LimitSwitchBlock, kind=kinds, range=st.none() | ranges, **common),
+    st.builds(ObstacleBlock, name=st.text(), active=st.booleans(), **common),
     st.builds(CriterionBlock, name=st.text(), choice=st.none() | criteria, **common),
     st.builds(ReconfigureBlock, target=st.builds(JointTarget, vectors), law=laws, **common),
     st.builds(

@@ -20,6 +20,7 @@ from irlx.blocks import (
     MotionLaw,
     MoveBlock,
     MoveKind,
+    ObstacleBlock,
     Origin,
     PoseTarget,
     ReconfigureBlock,
@@ -122,6 +123,8 @@ CASES = [
         ),
         "15 CRITERION MANIPULABILITY weight 2 gain 0.5 line 20",
     ),
+    (ObstacleBlock(id=15, origin=AT, name="Ściana_1", active=True), "15 OBSTACLE Ściana_1 line 20"),
+    (ObstacleBlock(id=16, origin=AT, name="Ściana_1", active=False), "16 OBSTACLEEND Ściana_1 line 20"),
     (
         CriterionBlock(id=16, origin=AT, name="MANIPULABILITY", choice=None),
         "16 CRITERIONEND MANIPULABILITY line 20",

@@ -153,7 +153,3 @@ def test_warnings(cell, koch):
     limits = "[robot.limits]\nacceleration = [1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1]\n"
     assert [d.code for d in cell(koch).warnings] == [WITHOUT_ACCELERATION]
     assert cell(koch + limits).warnings == ()
-    later = "[[obstacle]]\nname = 'ściana'\nshape = 'box'\n"
-    found = cell(koch + limits + later).warnings
-    assert [(d.code, d.place.key) for d in found] == [("IRL607", "obstacle")]
-    assert found[0].message == "[obstacle] is kept for a later version and has no effect yet"

@@ -134,7 +134,12 @@ RUNS = [
     ),
     ("", "FREEZESTART 12;", "IRL346: FREEZESTART names joint 12; the robot has joints 1 to 11"),
     ("", "MOVE LIN POSITION(11400, 1000, 1 / 0);", "IRL502: division by zero"),
-    ("", "OBSTACLE wall;", "IRL590: this version of irlx reads OBSTACLE but does not execute it yet"),
+    ("", "OBSTACLE wall; OBSTACLEEND wall;", "IRL573: the cell has no obstacle or group 'wall'"),
+    (
+        "MAIN_JOINT: j := R_JOINT_ACT.M_JOINT;",
+        "x := CLEARANCE(j, wall);",
+        "IRL573: the cell has no obstacle or group 'wall'",
+    ),
 ]
 
 

@@ -57,7 +57,7 @@ def test_a_log(place, inside, folder):
     done = inside("run", "p.irl")
     assert done.returncode == 0
     assert done.stdout.startswith("begun\ndone\nprogram     p.irl, complete: 2 moves")
-    assert done.stdout.endswith("p.irdata: 23 checks passed\n")
+    assert done.stdout.endswith("p.irdata: 24 checks passed\n")
     assert done.stderr == ""
     assert (folder / "log.txt").read_text() == "  440.00\n  200.00\n"
 

@@ -106,8 +106,21 @@ def test_ignored_warnings_of_a_run(inside, folder):
     assert (done.returncode, done.stderr) == (0, "")
 
 
+@pytest.mark.req("LANG-02")
+def test_ignored_warnings_of_the_motion(inside, folder):
+    """Quiet in a run and in a dry run alike; told in both without the comment."""
+    (folder / "m.toml").write_text('[robot]\nmodel = "arm7"\n')
+    moves = "MOVE LIN (441, 200, 324) C_CP := 10;{}\n  MOVE PTP (441, 190, 324);\n"
+    for comment in ("", "  { irlx: ignore IRL432 }"):
+        (folder / "m.irl").write_text(f"PROGRAM m;\nBEGIN\n  {moves.format(comment)}ENDPROGRAM;\n")
+        told = [inside("check", "m.irl", "--motion").stderr, inside("run", "m.irl").stderr]
+        assert ["IRL432" in words for words in told] == [not comment] * 2
+        assert "IRL140" not in "".join(told)
+
+
 def test_findings_of_all_stages_come_in_the_order_of_the_text(tmp_path):
+    free = "MOVE LIN POSITION(1, 2, 3) WITH TOLERANCE (0, 0, 0, 0, 0, 9);"
     (tmp_path / "p.irl").write_text(
-        "PROGRAM p;\nBEGIN\n  OBSTACLE a;\n  x := 1;\n  OBSTACLEEND a;\nENDPROGRAM\n"
+        f"PROGRAM p;\nBEGIN\n  {free}\n  x := 1;\n  {free}\nENDPROGRAM\n", encoding="utf-8"
     )
     assert [finding.code for finding in irlx.check(tmp_path / "p.irl")] == ["IRL591", "IRL201", "IRL591"]

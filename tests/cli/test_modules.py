@@ -162,11 +162,16 @@ WRONG = [
     ),
     (
         "FROM tools IMPORT x;",
-        {"tools_irl": "MODULE tools; EXPORT x; PROCEDURE x; BEGIN OBSTACLE a; ENDPROC; ENDMODULE"},
+        {"tools_irl": "MODULE tools; EXPORT x; PROCEDURE x; VAR SEMAPHORE: s; BEGIN ENDPROC; ENDMODULE"},
         [
-            "tools.irl:1:44: warning IRL591: this version of irlx reads OBSTACLE but does not execute it "
-            "yet; a run would end here"
+            "tools.irl:1:42: warning IRL591: this version of irlx reads the type SEMAPHORE but does not "
+            "execute it yet; a run would end here"
         ],
+    ),
+    (
+        "FROM tools IMPORT x;",
+        {"tools_irl": "MODULE tools; EXPORT x; PROCEDURE x; BEGIN OBSTACLE a; ENDPROC; ENDMODULE"},
+        ["tools.irl:1:53: error IRL573: the cell has no obstacle or group 'a'"],
     ),
 ]
 

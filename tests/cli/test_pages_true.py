@@ -8,6 +8,7 @@ import pytest
 import irlx
 from irlx.cli.main import main
 from irlx.diagnostics.codes.cell import CELL
+from irlx.diagnostics.codes.clearance import CLEARANCE
 from irlx.diagnostics.codes.command import COMMAND
 from irlx.diagnostics.codes.data_lists import DATA_LISTS
 from irlx.diagnostics.codes.files import FILES
@@ -16,10 +17,17 @@ from irlx.diagnostics.codes.run import RUN
 from irlx.diagnostics.codes.types import TYPES
 
 PAGES = Path(__file__).parents[2] / "docs" / "diagnostics"
-CODES = [code.id for group in (COMMAND, TYPES, DATA_LISTS, PACING, RUN, FILES, CELL) for code in group]
+CODES = [
+    code.id for group in (COMMAND, TYPES, DATA_LISTS, PACING, CLEARANCE, RUN, FILES, CELL) for code in group
+]
 IN_WORDS = {"IRL090", "IRL229", "IRL241", "IRL264", "IRL265", "IRL513", "IRL523", "IRL525", "IRL614"} | {
     "IRL550",
+    "IRL564",
     "IRL553",
+    "IRL574",
+    "IRL641",
+    "IRL642",
+    "IRL645",
 }
 """Codes that no small program for the packaged robot brings about: their pages say so in words."""
 IN_PYTHON = {"IRL580", "IRL581", "IRL582", "IRL583", "IRL584"}

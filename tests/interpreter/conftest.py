@@ -28,9 +28,10 @@ DEFAULTS = {
 def setting():
     """A machine of a number of joints; the joints numbered in `slides` are prismatic."""
 
-    def make(joints=7, slides=(), poses=None):
+    def make(joints=7, slides=(), poses=None, obstacles=None):
         names = tuple(f"j{number}" for number in range(1, joints + 1))
-        return Setting(names, tuple(n in slides for n in range(1, joints + 1)), DEFAULTS, poses or {})
+        prismatic = tuple(n in slides for n in range(1, joints + 1))
+        return Setting(names, prismatic, DEFAULTS, poses or {}, obstacles=obstacles)
 
     return make
 

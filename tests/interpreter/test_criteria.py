@@ -182,14 +182,6 @@ def test_names_in_routines_and_branches_count_too():
     assert [code for code, _, _ in found] == ["IRL363", "IRL363"]
 
 
-@pytest.mark.req("LANG-66")
-def test_parts_of_the_parameters_are_looked_at():
-    assert [marked for _, _, marked in warnings_of("CRITERION mine WEIGHT := CLEARANCE(1.5);")] == [
-        "CLEARANCE(1.5)",
-        "mine",
-    ]
-
-
 @pytest.mark.req("LANG-70")
 def test_the_page_shows_what_it_says():
     bad, repaired = re.findall(

@@ -2,19 +2,18 @@
 
 import pytest
 
+from irlx.interpreter.asking import ASKING
+from irlx.interpreter.rotations import FUNCTIONS
 from irlx.interpreter.support import unsupported
+from irlx.language import builtins
 from irlx.language.analysis import analyse
 from irlx.language.source import source_text
 
 START = "VAR POSITION: p := (1, 2, 3); MAIN_JOINT: j; BOOL: b; INT: i := 1; REAL: x;"
 
 STATEMENTS = [
-    ("OBSTACLE ściana;", "OBSTACLE", "OBSTACLE ściana"),
-    ("OBSTACLEEND ściana;", "OBSTACLEEND", "OBSTACLEEND ściana"),
     ("MOVE LIN p WITH TOLERANCE (0, 0, 0, 0, 0, 9);", "WITH TOLERANCE", "WITH TOLERANCE (0, 0, 0, 0, 0, 9)"),
 ]
-
-FUNCTIONS = ["CLEARANCE(j, wall)"]
 
 
 def warnings_of(text):
@@ -34,14 +33,9 @@ def test_statements(run_error, statement, what, marked):
     assert warnings_of(program(START, statement))[0] == ("IRL591", what, marked)
 
 
-@pytest.mark.parametrize("call", FUNCTIONS)
-@pytest.mark.parametrize("statement", ["x := {};", "MOVE LIN POSITION({}, 0, 0);", "x := 1 + {} * 2;"])
-def test_functions(run_error, statement, call):
-    name = call.split("(")[0]
-    code, message, text = run_error(START, statement.format(call))
-    assert (code, text) == ("IRL590", name)
-    assert message == f"this version of irlx reads the function {name} but does not execute it yet"
-    assert warnings_of(program(START, statement.format(call))) == [("IRL591", f"the function {name}", call)]
+@pytest.mark.req("LANG-34")
+def test_every_function_is_executed():
+    assert {*builtins.FUNCTIONS} - {"eof"} <= {*FUNCTIONS, *ASKING, *builtins.TYPES}
 
 
 @pytest.mark.parametrize("type", ["SEMAPHORE", "SIGNAL"])
@@ -70,22 +64,30 @@ def test_what_is_executed_is_not_warned_about():
     R_WEIGHTS[1] := 2; WAIT 2 SEC; WAIT FOR b TIMEOUT 3 SEC; part := IN_3; OUT_3 := lamp; lamp := part;
     OPEN(log, 'a', 'WRITE'); WRITE(log, i:4, x:8:2); WRITELN(b); READ(i, p.x); b := EOF(log);
     CLOSE(log); b := EOF();
+    OBSTACLE wall; x := CLEARANCE(j, wall); j := POSTURE(p, wall); OBSTACLEEND wall;
     MOVE PTP POSTURE(p); FREEZEEND; CYCLICSTART; CYCLICEND; JOINTLIMITEND; HALT;"""
     assert warnings_of(program(declarations, body)) == []
 
 
 def test_every_finding_is_reported_in_order():
-    body = "OBSTACLE a; MOVE_INC LIN p WITH TOLERANCE (1, 1, 1, 1, 1, 1); OBSTACLEEND a;"
-    found = warnings_of(program("ROBOT r := left;", body))
-    assert [what for _, what, _ in found] == ["OBSTACLE", "WITH TOLERANCE", "OBSTACLEEND"]
+    body = "MOVE_INC LIN p WITH TOLERANCE (1, 1, 1, 1, 1, 1);"
+    found = warnings_of(program("ROBOT r := left; VAR SEMAPHORE: s;", body))
+    assert [what for _, what, _ in found] == ["the type SEMAPHORE", "WITH TOLERANCE"]
 
 
 SILENT = [
     ("VAR ARRAY [1..2] OF SEMAPHORE: t;", "", "SEMAPHORE"),
-    ("VAR REAL: x := CLEARANCE(1.5);", "", "CLEARANCE(1.5)"),
     ("PROCEDURE p; VAR SEMAPHORE: s; BEGIN ENDPROC;", "", "SEMAPHORE"),
-    ("PROCEDURE p; BEGIN IF TRUE THEN OBSTACLE wall; ENDIF; ENDPROC;", "", "OBSTACLE wall"),
-    ("", "FOR i := 1 TO 3 DO OBSTACLE wall; ENDFOR;", "OBSTACLE wall"),
+    (
+        "PROCEDURE p; BEGIN IF TRUE THEN MOVE LIN q WITH TOLERANCE (1, 1, 1, 1, 1, 1); ENDIF; ENDPROC;",
+        "",
+        "WITH TOLERANCE (1, 1, 1, 1, 1, 1)",
+    ),
+    (
+        "",
+        "FOR i := 1 TO 3 DO MOVE LIN q WITH TOLERANCE (1, 1, 1, 1, 1, 1); ENDFOR;",
+        "WITH TOLERANCE (1, 1, 1, 1, 1, 1)",
+    ),
 ]
 
 

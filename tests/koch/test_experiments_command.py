@@ -51,12 +51,16 @@ def test_facts_of_all_experiments(command) -> None:
         "6.3",
         "6.4",
         "6.5",
+        "6.6",
     ]
     told = {" ".join(line.split()) for line in lines}
     assert "limits met (ticks), basic 11+ 42" in told
     assert "joint 7, free -412.8" in told
     assert "limits met (ticks), cyclic 10- 68, 11+ 139" in told
     assert "different values of joints 2, 3 1, 1" in told
+    assert "nearest shape, plain, mm -116.5" in told
+    assert "nearest shape, clear, mm 972.193" in told
+    assert "limits met (ticks), clear 10+ 81, 9+ 36" in told
 
 
 def test_without_matplotlib_one_line_and_the_facts(command, tmp_path) -> None:
@@ -78,9 +82,11 @@ def test_weight_and_limit_can_be_others(command) -> None:
     assert float(free) < 50.0
 
 
-def test_drawn_where_matplotlib_is(tmp_path) -> None:
+@pytest.mark.parametrize("name", ["6.3", "6.6"])
+def test_drawn_where_matplotlib_is(tmp_path, name: str) -> None:
     pytest.importorskip("matplotlib")
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(SOURCE), *sys.path])}
-    arguments = ["6.3", "--joints", "7", "11", "--window", "5", "6.2", "--out", str(tmp_path / "new")]
+    arguments = [name, "--joints", "7", "11", "--window", "5", "6.2", "--out", str(tmp_path / "new")]
     subprocess.run([sys.executable, str(KOCH / "experiments.py"), *arguments], env=environment, check=True)
-    assert (tmp_path / "new" / "experiment_6_3.png").read_bytes().startswith(b"\x89PNG")
+    picture = tmp_path / "new" / f"experiment_{name.replace('.', '_')}.png"
+    assert picture.read_bytes().startswith(b"\x89PNG")

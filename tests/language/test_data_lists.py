@@ -248,6 +248,7 @@ NOT_CONSTANT = {
     "BOOL: a := IN_3;": "2:12 IRL245 .. use 'IN_3', a port",
     "POSE: a := part;": "2:12 IRL245 .. use 'part', a frame of the cell",
     "MAIN_JOINT: a := POSTURE((1, 2, 3));": "2:18 IRL245 .. use 'POSTURE', which asks the robot",
+    "REAL: a := CLEARANCE((1, 2, 3), wall);": "2:12 IRL245 .. use 'CLEARANCE', which asks the robot",
     "ARRAY [1..k] OF INT: a;": "2:11 IRL245 .. use 'k', a constant of the program",
     "REAL: first := 1, a := frist;": "2:24 IRL201 unknown name 'frist'; did you mean 'first'?",
     "REAL: a := SQR(1);": "2:12 IRL206 unknown function 'SQR'; did you mean 'SQRT'?",

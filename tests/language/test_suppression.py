@@ -64,7 +64,7 @@ def test_nothing_is_unused_where_text_was_left_out():
 @pytest.mark.req("LANG-02")
 def test_what_only_the_check_finds_is_ignored_there(tmp_path):
     file = tmp_path / "p.irl"
-    file.write_text("PROGRAM p;\nBEGIN\n  OBSTACLE wall;  { irlx: ignore IRL591 }\n  HALT;\nENDPROGRAM\n")
+    file.write_text("PROGRAM p;\nVAR SEMAPHORE: s;  { irlx: ignore IRL591, IRL281 }\nBEGIN\nENDPROGRAM\n")
     assert irlx.check(file) == []
     assert irlx.load(file).diagnostics == ()
     file.write_text("PROGRAM p;\nBEGIN\n  HALT;  { irlx: ignore IRL591 }\nENDPROGRAM\n")

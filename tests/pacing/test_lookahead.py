@@ -7,10 +7,13 @@ from dataclasses import replace
 import pytest
 
 from irlx.blocks import (
+    AskAvoidingPosture,
+    AskClearance,
     AskPose,
     AskPosture,
     Blend,
     Block,
+    JointIncrement,
     JointRange,
     JointTarget,
     LimitClause,
@@ -66,6 +69,12 @@ def test_moves_that_pass_are_carried_out_with_the_one_behind() -> None:
     assert notes == []
 
 
+def test_a_ptp_belongs_to_the_moves_beside_it() -> None:
+    groups, notes = gathered(move(1), move(2, kind=MoveKind.PTP), signal(3), move(4, None))
+    assert groups == [[1, 2, 3, 4]]
+    assert notes == []
+
+
 def test_signals_between_them_belong_to_the_group() -> None:
     groups, notes = gathered(signal(1), move(2), signal(3), signal(4), move(5, None), signal(6))
     assert groups == [[1], [2, 3, 4, 5], [6]]
@@ -77,7 +86,8 @@ def test_signals_between_them_belong_to_the_group() -> None:
     [
         WaitBlock(id=3, origin=origin(3), duration=1.0),
         PauseBlock(id=3, origin=origin(3)),
-        replace(move(3), kind=MoveKind.PTP),
+        replace(move(3), kind=MoveKind.PTP, law=replace(LAW, duration=1.0)),
+        replace(move(3), kind=MoveKind.PTP, target=JointIncrement((0.0,))),
         replace(move(3), target=JointTarget((0.0,))),
         replace(move(3), reconfiguration=JointTarget((0.0,))),
         replace(
@@ -85,7 +95,7 @@ def test_signals_between_them_belong_to_the_group() -> None:
             limits=(LimitClause(LimitKind.SPEED, JointRange((-1.0,), (1.0,)), origin(3)),),
         ),
     ],
-    ids=["wait", "pause", "ptp", "posture", "reconfiguration", "clause"],
+    ids=["wait", "pause", "time of a ptp", "increments of a ptp", "posture", "reconfiguration", "clause"],
 )
 def test_what_needs_a_stop_ends_the_group_and_is_named(stopping: Block) -> None:
     groups, notes = gathered(move(1), move(2), stopping)
@@ -129,3 +139,22 @@ def test_questions_that_do_not_ask_where_the_robot_is_stop_nothing() -> None:
     assert [len(group) for group in ahead.before(AskPosture(origin(3)))] == [1]
     assert [note.code for note in notes] == ["IRL432"]
     assert ahead.before(AskPosture(origin(3))) == []
+
+
+@pytest.mark.req("LANG-54")
+@pytest.mark.parametrize("moving", [False, True])
+def test_a_distance_stops_only_where_obstacles_move(moving: bool) -> None:
+    notes: list[Diagnostic] = []
+    locate = lambda o: Place.in_text(TEXT, Span(o.start, o.end))  # noqa: E731
+    ahead = Lookahead(locate, Notes(notes), obstacles_move=moving)
+    assert ahead.take(move(1)) == []
+    assert [len(group) for group in ahead.before(AskClearance(origin(2), (0.0,), "wall"))] == [1] * moving
+    assert [note.code for note in notes] == ["IRL432"] * moving
+
+
+@pytest.mark.req("LANG-54")
+def test_an_avoiding_posture_stops() -> None:
+    ahead = Lookahead(lambda o: Place.in_text(TEXT, Span(o.start, o.end)), Notes([]))
+    assert ahead.take(move(1)) == []
+    asked = AskAvoidingPosture(origin(2), (0.0, 0.0, 0.0), None, "wall")
+    assert [len(group) for group in ahead.before(asked)] == [1]

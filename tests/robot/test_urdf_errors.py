@@ -7,7 +7,8 @@ from math import inf
 import pytest
 
 from irlx.robot.description import JointKind
-from irlx.robot.urdf import RobotModelError, read_urdf
+from irlx.robot.urdf import read_urdf
+from irlx.robot.urdf_values import RobotModelError
 
 pytestmark = pytest.mark.req("TRF-20")
 

@@ -172,6 +172,17 @@ DAMAGES = {
     "corner cut behind what stops": (lambda kit: with_something_between(corner(kit)), "stops", 4),
     "a blend into a PTP": (
         lambda kit: with_block(corner(kit), 2, kind=MoveKind.PTP, target=JointTarget((0.0,) * 7)),
+        "PTP straight",
+        5,
+    ),
+    "a blend into a PTP with TIME": (
+        lambda kit: with_block(
+            corner(kit),
+            2,
+            kind=MoveKind.PTP,
+            target=JointTarget((0.0,) * 7),
+            law=replace(LAW, duration=1.0),
+        ),
         "stops",
         4,
     ),

@@ -14,6 +14,11 @@ SHARED = {
     "irlx.robot.description",
     "irlx.robot.limits",
     "irlx.robot.relation",
+    "irlx.scene.obstacle",
+    "irlx.scene.scene",
+    "irlx.solids.mesh_file",
+    "irlx.solids.placement",
+    "irlx.solids.shape",
     "irlx.streams.error",
     "irlx.streams.joint_stream",
     "irlx.streams.scan",
@@ -39,7 +44,7 @@ def test_a_module_imports_only_what_is_shared(path):
     used = imports(path)
     of_irlx = {name for name in used if name.split(".")[0] == "irlx"}
     assert {name for name in of_irlx if not name.startswith("irlx.verifier")} <= SHARED
-    numeric = {"numpy", "scipy", "pinocchio", "proxsuite", "pin"}
+    numeric = {"numpy", "scipy", "pinocchio", "proxsuite", "pin", "coal", "hppfcl"}
     assert {name for name in used if name.split(".")[0] in numeric} <= LIBRARIES
 
 
@@ -54,5 +59,10 @@ def test_what_is_shared_holds_no_motion():
         file = file / "__init__.py" if file.is_dir() else file.with_suffix(".py")
         waiting |= {n for n in imports(file) if n.split(".")[0] == "irlx" and n != "irlx._version"} - seen
     parts = {name.split(".")[1] for name in seen}
-    assert parts <= {"blocks", "diagnostics", "promises", "robot", "streams"}
+    assert parts <= {"blocks", "diagnostics", "promises", "robot", "scene", "solids", "streams"}
     assert not any(name.startswith("irlx.robot.kinematics") for name in seen)
+    # Of the scene its plain data, not the distances that the motion keeps.
+    assert {name for name in seen if name.startswith("irlx.scene")} == {
+        "irlx.scene.obstacle",
+        "irlx.scene.scene",
+    }

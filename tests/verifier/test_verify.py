@@ -37,7 +37,7 @@ def test_good_stream_passes(good: JointStream, robot) -> None:
     report = verify_stream(good, robot)
     assert report.passed, str(report)
     assert {check.name for check in report.unchecked} == UNASKED
-    absent = {"file", "written rates", "constraints", "waits still", "waiting time"} | {
+    absent = {"file", "written rates", "constraints", "clearance", "waits still", "waiting time"} | {
         name for name in CHECKS if name.startswith("reconfiguration")
     }
     assert {check.name for check in report.without_case} == absent
@@ -57,7 +57,13 @@ def test_without_a_robot_geometry_is_not_checked(good: JointStream) -> None:
     report = verify_stream(good, None)
     assert report.passed
     tool = CHECKS[CHECKS.index("tool position") :]
-    assert {check.name for check in report.unchecked} == {"robot", "constraints", *UNASKED, *tool}
+    assert {check.name for check in report.unchecked} == {
+        "robot",
+        "constraints",
+        "clearance",
+        *UNASKED,
+        *tool,
+    }
 
 
 def off(amount: float, joint: int, block: int, place: int) -> Change:

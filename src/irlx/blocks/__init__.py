@@ -8,6 +8,7 @@ numbered from 1 in the robot's order.
 from irlx.blocks.block import Block, HaltBlock, Origin, PauseBlock
 from irlx.blocks.criterion import CriterionBlock, CriterionChoice, CriterionClause, CriterionParam
 from irlx.blocks.move import ArcCourse, Blend, MotionLaw, MoveBlock, MoveKind, PathCourse, Profile
+from irlx.blocks.obstacle import ObstacleBlock
 from irlx.blocks.options import (
     CyclicBlock,
     FreezeBlock,
@@ -17,6 +18,8 @@ from irlx.blocks.options import (
     LimitSwitchBlock,
 )
 from irlx.blocks.questions import (
+    AskAvoidingPosture,
+    AskClearance,
     AskInput,
     AskInputChange,
     AskJointBounds,
@@ -38,6 +41,8 @@ from irlx.blocks.tool import ToolBlock, WeightsBlock
 
 __all__ = [
     "ArcCourse",
+    "AskAvoidingPosture",
+    "AskClearance",
     "AskInput",
     "AskInputChange",
     "AskJointBounds",
@@ -69,6 +74,7 @@ __all__ = [
     "MotionLaw",
     "MoveBlock",
     "MoveKind",
+    "ObstacleBlock",
     "Origin",
     "PathCourse",
     "PauseBlock",

@@ -17,6 +17,7 @@ from typing import Any, Union, get_args, get_origin, get_type_hints
 from irlx.blocks.block import Block, HaltBlock, PauseBlock
 from irlx.blocks.criterion import CriterionBlock
 from irlx.blocks.move import ArcCourse, MoveBlock
+from irlx.blocks.obstacle import ObstacleBlock
 from irlx.blocks.options import CyclicBlock, FreezeBlock, LimitSwitchBlock
 from irlx.blocks.reconfigure import ReconfigureBlock
 from irlx.blocks.signal import InputBlock, SignalBlock, WaitBlock
@@ -33,6 +34,7 @@ BLOCK_TYPES: dict[str, type[Block]] = {
         FreezeBlock,
         CyclicBlock,
         CriterionBlock,
+        ObstacleBlock,
         SignalBlock,
         InputBlock,
         WaitBlock,

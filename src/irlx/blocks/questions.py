@@ -64,6 +64,31 @@ class AskManipulability:
 
 
 @dataclass(frozen=True)
+class AskClearance:
+    """How far is the robot in this posture (rad, m) from an obstacle or group, at this moment?
+
+    `name` as the cell writes it. Answer: one number, m, the smallest distance, negative where they overlap.
+    """
+
+    origin: Origin
+    posture: tuple[float, ...]
+    name: str
+
+
+@dataclass(frozen=True)
+class AskAvoidingPosture:
+    """Which posture of this pose keeps best clear of an obstacle or group, all blocks so far executed?
+
+    `name` as the cell writes it. Pose and answer as in AskPostureOf.
+    """
+
+    origin: Origin
+    position: tuple[float, float, float]
+    orientation: tuple[float, float, float, float] | None
+    name: str
+
+
+@dataclass(frozen=True)
 class AskLastMove:
     """How long did the last MOVE take, and where on it does the tool stand, all blocks so far executed?
 
@@ -128,6 +153,8 @@ MachineQuestion = (
     | AskNearestPosture
     | AskPose
     | AskManipulability
+    | AskClearance
+    | AskAvoidingPosture
     | AskLastMove
     | AskJointBounds
     | AskInput

@@ -9,6 +9,7 @@ from math import degrees
 from irlx.blocks.block import Block, HaltBlock, PauseBlock
 from irlx.blocks.criterion import CriterionBlock, CriterionChoice
 from irlx.blocks.move import Blend, MotionLaw, MoveBlock, MoveKind, PathCourse, Profile
+from irlx.blocks.obstacle import ObstacleBlock
 from irlx.blocks.options import CyclicBlock, FreezeBlock, JointRange, LimitKind, LimitSwitchBlock
 from irlx.blocks.reconfigure import ReconfigureBlock
 from irlx.blocks.signal import InputBlock, Port, SignalBlock, SignalKind, WaitBlock
@@ -126,6 +127,11 @@ def _(block: CyclicBlock, joint_units: Sequence[str]) -> str:
 @_words.register
 def _(block: CriterionBlock, joint_units: Sequence[str]) -> str:
     return f"CRITERIONEND {block.name}" if block.choice is None else f"CRITERION {_criterion(block.choice)}"
+
+
+@_words.register
+def _(block: ObstacleBlock, joint_units: Sequence[str]) -> str:
+    return f"{'OBSTACLE' if block.active else 'OBSTACLEEND'} {block.name}"
 
 
 def _criterion(choice: CriterionChoice) -> str:

@@ -12,6 +12,7 @@ from irlx.cell.cell import Cell, MotionDefaults, NamedFrame
 from irlx.cell.constraints import read_constraints
 from irlx.cell.errors import CellError
 from irlx.cell.limit_entry import LimitEntry
+from irlx.cell.scene import read_scene
 from irlx.cell.schema import CellFile, FrameSection, LimitsSection, RobotSection
 from irlx.diagnostics import Diagnostic, Place, report
 from irlx.diagnostics.diagnostic import near_matches
@@ -23,7 +24,8 @@ _KINDS = ("position", "speed", "acceleration")
 
 
 def build_cell(content: CellFile, robot_section: RobotSection, robot: RobotDescription, file: str) -> Cell:
-    """Cell of a robot. Raises CellError with every fault found: IRL604 to IRL606, IRL620.
+    """Cell of a robot. Raises CellError with every fault found: IRL604 to IRL606, IRL620,
+    and those of `read_scene`.
 
     Lists of wrong length stop the checks that need them, no others.
     """
@@ -37,6 +39,7 @@ def build_cell(content: CellFile, robot_section: RobotSection, robot: RobotDescr
     _status_joints(robot_section, robot, file, errors)
     q = np.array([to_si(robot, joint, value) for joint, value in enumerate(start[:count])])
     errors += _frame_errors(content, file)
+    scene, scene_warnings = read_scene(content, robot_section, robot, file, errors)
     constraints = read_constraints(content.constraint, robot, q if not errors else None, file, errors)
     if not errors:
         errors += _start_errors(q, limits, robot, file)
@@ -53,9 +56,10 @@ def build_cell(content: CellFile, robot_section: RobotSection, robot: RobotDescr
         round(motion.tick_ms * 1e6),
         MotionDefaults(**motion.model_dump(exclude={"tick_ms"})),
         {name: _frame(section) for name, section in content.frames.items()},
-        _warnings(content, limits, file),
+        (*scene_warnings, *_warnings(limits, file)),
         *constraints,
         {name.casefold(): trace for name, trace in content.signals.inputs.items()},
+        scene,
     )
 
 
@@ -195,10 +199,8 @@ def _frame(section: FrameSection) -> NamedFrame:
     )
 
 
-def _warnings(content: CellFile, limits: JointLimits, file: str) -> tuple[Diagnostic, ...]:
+def _warnings(limits: JointLimits, file: str) -> tuple[Diagnostic, ...]:
     found = []
-    if content.obstacle:
-        found.append(report("IRL607", Place(file, key="obstacle"), section="obstacle"))
     if not np.any(np.isfinite(limits.acceleration_upper)):
         found.append(report("IRL621", Place(file, key="robot.limits.acceleration")))
     return tuple(found)

@@ -12,6 +12,7 @@ from irlx.diagnostics import Diagnostic, Place
 from irlx.robot.description import RobotDescription
 from irlx.robot.limits import JointLimits
 from irlx.robot.relation import JointRelation
+from irlx.scene.scene import Scene
 
 Array = NDArray[np.float64]
 
@@ -73,3 +74,4 @@ class Cell:
     relations: tuple[JointRelation, ...] = ()
     registered: tuple[RegisteredConstraint, ...] = ()
     inputs: Mapping[str, tuple[tuple[float, float], ...]] = field(default_factory=dict)
+    scene: Scene = field(default_factory=Scene)

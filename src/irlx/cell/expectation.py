@@ -26,6 +26,8 @@ def expectation(fault: Any) -> str:
     kind = fault["type"]
     if kind in _TABLES:
         return "a table"
+    if kind == "missing":
+        return f"a table with {fault['loc'][-1]}"
     if kind not in _WORDS:
         return str(fault["msg"])
     data = {name: _COUNTS.get(value, value) if "length" in name else value for name, value in _data(fault)}

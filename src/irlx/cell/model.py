@@ -9,13 +9,16 @@ from typing import Any
 from irlx.cell.errors import CellError
 from irlx.cell.external import external_names
 from irlx.cell.find import is_file
-from irlx.cell.named import named_section, named_urdf, robot_names
+from irlx.cell.link_meshes import with_mesh_files
+from irlx.cell.named import named_section, named_urdf, robot_names, urdf_folder
 from irlx.cell.packaged import packaged_names
-from irlx.cell.schema import RobotSection, Section
+from irlx.cell.robot_data import robot_data_folder
+from irlx.cell.schema import RobotSection, Section, SelfCollisionSection
 from irlx.diagnostics import Place, report
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.robot.description import COORDINATES, RobotDescription
-from irlx.robot.urdf import RobotModelError, read_urdf
+from irlx.robot.urdf import read_urdf
+from irlx.robot.urdf_values import RobotModelError
 
 
 def with_packaged_defaults(asked: RobotSection) -> RobotSection:
@@ -25,7 +28,24 @@ def with_packaged_defaults(asked: RobotSection) -> RobotSection:
     own = named_section(asked.model)
     merged = own.model_copy(update={name: getattr(asked, name) for name in asked.model_fields_set})
     limits = {name: getattr(asked.limits, name) for name in asked.limits.model_fields_set}
-    return merged.model_copy(update={"limits": own.limits.model_copy(update=limits)})
+    sections = {
+        "limits": own.limits.model_copy(update=limits),
+        "self_collision": _self_collision(asked.model, own.self_collision, asked.self_collision),
+    }
+    return merged.model_copy(update=sections)
+
+
+def _self_collision(
+    model: str, own: SelfCollisionSection, asked: SelfCollisionSection
+) -> SelfCollisionSection:
+    """What a cell asks for, the rest as the robot of that name has it; pairs that may touch add up."""
+    given = {name: getattr(asked, name) for name in asked.model_fields_set}
+    given["may_touch"] = [*own.may_touch, *asked.may_touch]
+    data = robot_data_folder() if model in external_names() else None
+    if own.srdf is not None and asked.srdf is None and data is not None:
+        given["srdf"] = str(data / own.srdf)
+    fields = own.model_fields_set | asked.model_fields_set
+    return own.model_copy(update=given) if fields else own
 
 
 def without_absent_joints(
@@ -72,7 +92,7 @@ def load_robot(section: RobotSection, file: str, folder: Path) -> RobotDescripti
     held = _read(text, section, dict.fromkeys(section.locked, 0.0), file)
     slides = {joint.name for joint in held.joints if joint.is_prismatic}
     locked = {name: value * (1e-3 if name in slides else _DEGREE) for name, value in section.locked.items()}
-    robot = _read(text, section, locked, file)
+    robot = with_mesh_files(_read(text, section, locked, file), urdf_folder(model, folder))
     task = section.task
     if task is None and model in robot_names():
         task = named_section(model).task

@@ -16,8 +16,11 @@ from irlx.cell.schema import (
     FrameSection,
     LimitsSection,
     MotionSection,
+    ObstacleSection,
     RobotSection,
+    SelfCollisionSection,
     SignalsSection,
+    WaypointSection,
 )
 from irlx.diagnostics import Diagnostic, Place, report
 from irlx.diagnostics.diagnostic import near_matches
@@ -32,9 +35,12 @@ _SECTIONS: dict[tuple[str, ...], type[BaseModel]] = {
     (): CellFile,
     ("robot",): RobotSection,
     ("robot", "limits"): LimitsSection,
+    ("robot", "self_collision"): SelfCollisionSection,
     ("motion",): MotionSection,
     ("frames", "*"): FrameSection,
     ("constraint", "*"): ConstraintSection,
+    ("obstacle", "*"): ObstacleSection,
+    ("obstacle", "*", "trajectory", "*"): WaypointSection,
     ("signals",): SignalsSection,
 }
 
@@ -97,7 +103,7 @@ def _value_at(table: Any, location: tuple[int | str, ...]) -> Any:
 
 
 def _known_keys(section: tuple[int | str, ...]) -> list[str]:
-    names = tuple(str(step) for step in section)
+    names = tuple("*" if isinstance(step, int) else step for step in section)
     model = _SECTIONS.get(names) or _SECTIONS.get((*names[:-1], "*"))
     return list(model.model_fields) if model else []
 

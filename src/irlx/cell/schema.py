@@ -47,7 +47,31 @@ def _is_entry(entry: Any) -> bool:
     return numbers and entry[0] >= 0.0
 
 
+def _scale(found: Any) -> tuple[float, float, float]:
+    """What a mesh is scaled by along x, y, z; one number stands for all three."""
+    factors = found if isinstance(found, list) else [found] * 3
+    numbers = all(isinstance(f, int | float) and not isinstance(f, bool) and isfinite(f) for f in factors)
+    if len(factors) != 3 or not numbers or not all(factors):
+        raise PydanticCustomError("scale", "a number other than 0, or three of them")
+    x, y, z = (float(factor) for factor in factors)
+    return x, y, z
+
+
+def _link_pair(found: Any) -> tuple[str, str]:
+    if not (isinstance(found, list) and len(found) == 2 and all(isinstance(name, str) for name in found)):
+        raise PydanticCustomError("link_pair", "the names of two links")
+    return found[0], found[1]
+
+
+def _not_empty(found: list[Any]) -> list[Any]:
+    if not found:
+        raise PydanticCustomError("not_empty", "at least one table with time and xyz")
+    return found
+
+
 InputTrace = Annotated[Any, PlainValidator(_trace)]
+LinkPair = Annotated[Any, PlainValidator(_link_pair)]
+Scale = Annotated[Any, PlainValidator(_scale)]
 FrameName = Annotated[str, AfterValidator(_frame_name)]
 
 
@@ -68,6 +92,19 @@ class LimitsSection(Section):
     acceleration: Limits | None = None
 
 
+class SelfCollisionSection(Section):
+    """Links that are kept off each other: `margin` and `influence` in mm, pairs that may touch.
+
+    `srdf` is a file that names more such pairs. `active` by default where there are any.
+    """
+
+    active: bool | None = None
+    may_touch: list[LinkPair] = Field(default_factory=list)
+    srdf: str | None = None
+    margin: NotNegative = 5.0
+    influence: NotNegative = 30.0
+
+
 class RobotSection(Section):
     """The robot: model, tool frame, locked joints, coordinates of its task, posture and weights."""
 
@@ -79,6 +116,7 @@ class RobotSection(Section):
     weights: list[Positive] | None = None
     status_joints: list[str] = Field(default_factory=list)
     limits: LimitsSection = Field(default_factory=LimitsSection)
+    self_collision: SelfCollisionSection = Field(default_factory=SelfCollisionSection)
 
 
 class MotionSection(Section):
@@ -125,12 +163,39 @@ class ConstraintSection(Section):
     use: str | None = None
 
 
+class WaypointSection(Section):
+    """Where an obstacle that moves lies at a time (s) of the run: mm, degrees as for frames."""
+
+    time: NotNegative
+    xyz: Vector
+    rpy: Vector = Field(default_factory=lambda: [0.0, 0.0, 0.0])
+
+
+class ObstacleSection(Section):
+    """An obstacle, or a group of them: a shape with the sizes that go with it, mm, and a place in `frame`."""
+
+    name: str
+    shape: str
+    size: Annotated[list[Positive], Field(min_length=3, max_length=3)] | None = None
+    radius: Positive | None = None
+    length: Positive | None = None
+    file: str | None = None
+    scale: Scale = (1.0, 1.0, 1.0)
+    members: list[str] | None = None
+    frame: str | None = None
+    xyz: Vector = Field(default_factory=lambda: [0.0, 0.0, 0.0])
+    rpy: Vector = Field(default_factory=lambda: [0.0, 0.0, 0.0])
+    trajectory: Annotated[list[WaypointSection], AfterValidator(_not_empty)] | None = None
+    margin: NotNegative = 10.0
+    influence: NotNegative = 200.0
+
+
 class CellFile(Section):
-    """A whole cell file. `obstacle` is kept for later versions and not looked into."""
+    """A whole cell file."""
 
     robot: RobotSection = Field(default_factory=RobotSection)
     motion: MotionSection = Field(default_factory=MotionSection)
     frames: dict[FrameName, FrameSection] = Field(default_factory=dict)
     constraint: list[ConstraintSection] = Field(default_factory=list)
-    obstacle: list[dict[str, Any]] = Field(default_factory=list)
+    obstacle: list[ObstacleSection] = Field(default_factory=list)
     signals: SignalsSection = Field(default_factory=SignalsSection)

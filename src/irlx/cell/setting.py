@@ -11,7 +11,7 @@ from irlx.interpreter.setting import Default, Setting
 
 
 def setting_of(cell: Cell) -> Setting:
-    """Joints, defaults of the system variables and named poses and weights of a cell, in program units."""
+    """Joints, defaults of the system variables, and what has a name in a cell, in program units."""
     motion = cell.motion
     defaults: dict[str, Default] = {
         "R_SPEED": motion.speed,
@@ -32,7 +32,8 @@ def setting_of(cell: Cell) -> Setting:
     }
     axes = cell.robot.axes
     slides, weights = tuple(axis.is_prismatic for axis in axes), tuple(map(float, cell.weights))
-    return Setting(cell.robot.joint_names, slides, defaults, poses, weights, _robot_names(cell))
+    obstacles = {normalize("NFC", name).casefold(): name for name in cell.scene.names}
+    return Setting(cell.robot.joint_names, slides, defaults, poses, weights, _robot_names(cell), obstacles)
 
 
 def _robot_names(cell: Cell) -> tuple[str, ...]:

@@ -68,4 +68,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def entry_point() -> None:
     """Console entry: `irlx`."""
+    # Matrices here are small: threads of the linear algebra would only wait for each other, the more so on a
+    # busy machine. Set before anything loads it; who asks for more threads gets them.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     sys.exit(main())

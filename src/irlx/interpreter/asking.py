@@ -7,6 +7,8 @@ from math import pi
 from typing import TYPE_CHECKING, Any
 
 from irlx.blocks import (
+    AskAvoidingPosture,
+    AskClearance,
     AskInput,
     AskJointBounds,
     AskLastMove,
@@ -24,11 +26,13 @@ from irlx.interpreter.code import Frame, Step
 from irlx.interpreter.compiled import Compiled, first_failing
 from irlx.interpreter.errors import fail
 from irlx.interpreter.joints import main_joints, si_values
+from irlx.interpreter.obstacles import obstacle_of_cell
 from irlx.interpreter.scope import Signal
 from irlx.interpreter.targets import origin_of, pose_of_answer, pose_target
 from irlx.interpreter.types import POSE, POSITION, REAL, Record, Type, joint_bounds
 from irlx.interpreter.values import ArrayValue, RecordValue
 from irlx.language import tree
+from irlx.language.obstacles import OBSTACLE_NAME, obstacle_name
 
 if TYPE_CHECKING:
     from irlx.interpreter.expressions import Expressions
@@ -41,7 +45,7 @@ _OF_LAST_MOVE: dict[str, tuple[int, float]] = {
 """System variables on the last move: which part of the answer they are, and its unit in that of programs."""
 ACTUAL = frozenset({"r_joint_act", "r_robtarget_act", "r_jbd", *_OF_LAST_MOVE})
 """System variables that tell where the robot is and what it may do, casefolded."""
-ASKING = frozenset({"posture", "fk", "ik", "manipulability"})
+ASKING = frozenset({"posture", "fk", "ik", "manipulability", "clearance"})
 """Functions that ask the machine, casefolded."""
 
 Answer = tuple[float, ...]
@@ -143,11 +147,10 @@ class Asking:
         return Compiled(signal.type, lambda frame: to(value(frame)))
 
     def call(self, name: tree.Name, given: Sequence[tree.Expression], node: tree.Node) -> Compiled:
-        """A function that asks. Raises InterpreterError: IRL228, IRL590."""
-        if name.key == "posture" and len(given) == 2:
-            what = "the function POSTURE with an obstacle"
-            raise fail("IRL590", self._expressions.source, name.span, what=what)
+        """A function that asks. Raises InterpreterError: IRL228, IRL222, IRL573, IRL590."""
         self._machine_for(name)
+        if name.key == "clearance" or (name.key == "posture" and len(given) != 1):
+            return self._about_obstacle(name.key, given, node)
         main, joint = self._type("main_joint"), self._type("joint")
         postures, places = (main, joint), (POSE, POSITION)
         types = {
@@ -180,6 +183,36 @@ class Asking:
 
         found = self._ask(node, question, lambda answer: main_joints(main, answer, setting))
         return Compiled(main, found)
+
+    def _about_obstacle(self, key: str, given: Sequence[tree.Expression], node: tree.Node) -> Compiled:
+        """CLEARANCE, and POSTURE with an obstacle. Raises InterpreterError: IRL228, IRL222, IRL573."""
+        context, main, joint = self._expressions.context, self._type("main_joint"), self._type("joint")
+        if len(given) != 2:
+            expected = "2 values" if key == "clearance" else "1 or 2 values"
+            data = {"function": key.upper(), "expected": expected, "found": len(given)}
+            raise fail("IRL228", context.source, node.span, **data)
+        types = (main, joint) if key == "clearance" else (POSE, POSITION)
+        (what,) = self._expressions.arguments(key.upper(), (types,), given[:1], node)
+        wrong = first_failing((what,))
+        if wrong is not None:
+            return wrong
+        name = obstacle_name(given[1])
+        if name is None:
+            data = {"expected": OBSTACLE_NAME, "found": "an expression"}
+            raise fail("IRL222", context.source, given[1].span, **data)
+        cell_name, setting = obstacle_of_cell(name, context), context.setting
+        origin, base = origin_of(context.source, node), Base(context, node)
+
+        def clearance(frame: Frame) -> Question:
+            return AskClearance(origin, si_values(what.run(frame), setting), cell_name)
+
+        def avoiding(frame: Frame) -> Question:
+            target = pose_target(what.run(frame), base)
+            return AskAvoidingPosture(origin, target.position, target.orientation, cell_name)
+
+        if key == "clearance":
+            return Compiled(REAL, self._ask(node, clearance, lambda answer: answer[0] * 1e3))
+        return Compiled(main, self._ask(node, avoiding, lambda answer: main_joints(main, answer, setting)))
 
     def _of_posture(self, key: str, node: tree.Node, run: Callable[[Frame], Any]) -> Compiled:
         """FK and MANIPULABILITY: what a posture is like."""

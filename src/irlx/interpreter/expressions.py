@@ -33,6 +33,7 @@ from irlx.interpreter.values import Value, has_arrays
 from irlx.language import tree
 from irlx.language.builtins import BARE_FUNCTIONS
 from irlx.language.checking.operators import aggregate_type, values_in_parentheses
+from irlx.language.obstacles import own_nodes
 
 _LITERALS = (tree.IntLiteral, tree.RealLiteral, tree.BoolLiteral, tree.StringLiteral)
 
@@ -125,7 +126,7 @@ class Expressions:
             return self._is_step(root)
         known = self._suspends.get(id(root))
         if known is None:
-            known = self._suspends[id(root)] = any(map(self._is_step, tree.walk(root)))
+            known = self._suspends[id(root)] = any(map(self._is_step, own_nodes(root)))
         return known
 
     def _is_step(self, node: tree.Node) -> bool:

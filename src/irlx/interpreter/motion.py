@@ -12,6 +12,7 @@ from irlx.blocks import (
     FreezeBlock,
     LimitKind,
     LimitSwitchBlock,
+    ObstacleBlock,
     ReconfigureBlock,
 )
 from irlx.interpreter.code import Assembler
@@ -19,6 +20,7 @@ from irlx.interpreter.expressions import Expressions
 from irlx.interpreter.law import Law
 from irlx.interpreter.motion_parts import Make, MotionParts, NextId
 from irlx.interpreter.moves import Moves
+from irlx.interpreter.obstacles import obstacle_of_cell
 from irlx.interpreter.parameters import choice_of, criterion_name, criterion_params
 from irlx.interpreter.types import INT
 from irlx.language import tree
@@ -44,6 +46,8 @@ class Motion(MotionParts):
                 self._switch(statement)
             case tree.CriterionEnd():
                 self._switch(statement)
+            case tree.ObstacleStart() | tree.ObstacleEnd():
+                self._obstacle(statement)
             case _:
                 return False
         return True
@@ -63,6 +67,16 @@ class Motion(MotionParts):
                 case tree.CriterionEnd(name=name):
                     return (CriterionBlock(id=id, origin=origin, name=criterion_name(name), choice=None),)
             return (CyclicBlock(id=id, origin=origin, active=isinstance(node, tree.CyclicStart)),)
+
+        self._emit(node, (), make)
+
+    def _obstacle(self, node: tree.ObstacleStart | tree.ObstacleEnd) -> None:
+        """Raises InterpreterError, IRL573."""
+        origin, active = self._origin(node), isinstance(node, tree.ObstacleStart)
+        name = obstacle_of_cell(node.name, self._context)
+
+        def make(_: list[Any], next_id: NextId) -> tuple[Block]:
+            return (ObstacleBlock(id=next_id(), origin=origin, name=name, active=active),)
 
         self._emit(node, (), make)
 

@@ -39,7 +39,8 @@ class Setting:
     `defaults` maps names of system variables to the values that they start with: mm/s, mm/s2, deg/s, deg/s2,
     %, mm/s3, mm. `poses` are named poses of the cell in the root frame of the robot: position in mm,
     quaternion scalar first. `weights` are those of the joints, 1 each where none are given. `robots` are the
-    names by which ROBOT may call the robot.
+    names by which ROBOT may call the robot. `obstacles` are those of the cell, and its groups, by casefolded
+    name as the cell writes them; None where nobody knows the cell, and any name may be one.
     """
 
     joint_names: tuple[str, ...]
@@ -50,6 +51,7 @@ class Setting:
     )
     weights: tuple[float, ...] = ()
     robots: tuple[str, ...] = ()
+    obstacles: Mapping[str, str] | None = None
 
     def default(self, name: str) -> Default:
         """What the system variable of a name starts with."""

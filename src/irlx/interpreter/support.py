@@ -7,11 +7,9 @@ from collections.abc import Iterator, Sequence
 from irlx.blocks.criterion import LIBRARY
 from irlx.diagnostics import Diagnostic, Place, SourceText, report
 from irlx.diagnostics.diagnostic import near_matches
-from irlx.interpreter.asking import ASKING
 from irlx.interpreter.parameters import criterion_name
-from irlx.interpreter.rotations import FUNCTIONS
 from irlx.interpreter.system_names import LATER_TYPES
-from irlx.language import builtins, tree
+from irlx.language import tree
 from irlx.language.data_lists import ImportedList
 from irlx.language.modules import ImportedModule
 from irlx.language.symbols import declared_symbols, parameter_symbols
@@ -31,12 +29,8 @@ EXECUTED_DECLARATIONS = (
     tree.RobotBinding,
 )
 _CLAUSES = (tree.WithLimit, tree.WithReconfiguration, tree.WithCriterion)
-_EXECUTED_FUNCTIONS = frozenset({*FUNCTIONS, *ASKING, "eof", *builtins.TYPES}) - LATER_TYPES
-_READ_ONLY_FUNCTIONS = frozenset(builtins.FUNCTIONS) - _EXECUTED_FUNCTIONS
 
 _NAMES: dict[type[tree.Node], str] = {
-    tree.ObstacleStart: "OBSTACLE",
-    tree.ObstacleEnd: "OBSTACLEEND",
     tree.WithTolerance: "WITH TOLERANCE",
 }
 """Parts that are read only, and what a program calls them."""
@@ -117,11 +111,6 @@ def _parts(root: tree.Node, declared: frozenset[str]) -> Iterator[tuple[tree.Nod
                 missing = missing_in_move(node)
                 if missing is not None:
                     yield missing
-            case tree.FunctionCall(name=name, arguments=arguments) if name.key not in declared:
-                if name.key in _READ_ONLY_FUNCTIONS:
-                    yield node, f"the function {name.name}"
-                elif name.key == "posture" and len(arguments) == 2:
-                    yield node, "the function POSTURE with an obstacle"
             case tree.NamedType(name=name) if name.key in LATER_TYPES - declared:
                 yield node, f"the type {name.name}"
             case _ if type(node) in _NAMES and not isinstance(node, tree.WithTolerance):

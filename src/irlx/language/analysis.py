@@ -23,7 +23,15 @@ from irlx.language.suppression import Ignore, after_ignoring
 from irlx.language.switches import check_freeze, check_switches
 from irlx.language.symbols import Symbol
 
-__all__ = ["Analysis", "CellJoints", "CellNames", "DataListResolver", "Resolver", "analyse"]
+__all__ = [
+    "Analysis",
+    "CellJoints",
+    "CellNames",
+    "CellObstacles",
+    "DataListResolver",
+    "Resolver",
+    "analyse",
+]
 
 _Root: TypeAlias = "tree.Program | tree.Module | tree.DataList"
 
@@ -39,6 +47,9 @@ CellNames: TypeAlias = "Callable[[tree.Program | tree.Module], Collection[str]]"
 
 CellJoints: TypeAlias = "Callable[[tree.Program | tree.Module], tuple[str, ...]]"
 """Gives the names of the joints of a program's robot, none where they are not known."""
+
+CellObstacles: TypeAlias = "Callable[[tree.Program | tree.Module], Collection[str] | None]"
+"""Gives the names of obstacles and groups of a program's cell, None where it is not known."""
 
 
 @dataclass(frozen=True)
@@ -78,6 +89,7 @@ def analyse(
     data_lists: DataListResolver | None = None,
     *,
     joints: tuple[str, ...] | CellJoints = (),
+    obstacles: CellObstacles | None = None,
     lints: bool = False,
 ) -> Analysis:
     """Parse and check a text; never raises for what a text may hold.
@@ -85,15 +97,15 @@ def analyse(
     Without a `resolver` imported names are taken as declared and modules are not looked at. What
     `cell_names` gives counts as constants of the program, which its own declarations may hide.
     `data_lists` gives the texts of data lists; without it, one that is imported may hold any name.
-    `joints` are those of the robot where it is known, or what gives them for a tree, and with `lints` there
-    are warnings of what is allowed but seldom meant.
+    `joints` are those of the robot where it is known, or what gives them for a tree; what `obstacles` gives
+    OBSTACLE and CLEARANCE may name. With `lints` there are warnings of what is allowed but seldom meant.
     """
     parsed = parse(source)
     if parsed.tree is None:
         return Analysis(source, None, in_order(parsed.findings, source, ()), parsed.comments)
-    given = (
-        cell_names(parsed.tree) if cell_names and isinstance(parsed.tree, tree.Program | tree.Module) else ()
-    )
+    text = parsed.tree if isinstance(parsed.tree, tree.Program | tree.Module) else None
+    given = cell_names(text) if cell_names and text is not None else ()
+    known_obstacles = obstacles(text) if obstacles and text is not None else None
     imports = imports_of(parsed.tree, source, data_lists)
     names = _joint_names(parsed.tree, joints)
     scope, findings = check_names(parsed.tree, source, given, imports, complete=parsed.complete)
@@ -106,6 +118,7 @@ def analyse(
         given,
         names,
         modules,
+        obstacles=known_obstacles,
         complete=parsed.complete and imports.whole,
     )
     findings += standing_alone(typed.findings, (*parsed.findings, *imports.findings))

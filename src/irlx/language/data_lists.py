@@ -10,6 +10,7 @@ from irlx.diagnostics import Diagnostic, IrlxError, Place, Related, SourceText, 
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.language import tree
 from irlx.language.builtins import FUNCTIONS, SYSTEM_VARIABLES, TYPES, is_port_name
+from irlx.language.obstacles import own_nodes
 from irlx.language.parser import Parse, parse
 from irlx.language.scope import Scope
 from irlx.language.symbols import declared_symbols
@@ -22,7 +23,7 @@ DataListResolver: TypeAlias = Callable[[str, Place], SourceText]
 Raises IrlxError where there is none; its diagnostics become findings as they are.
 """
 
-_ASKS_THE_ROBOT = frozenset({"posture", "fk", "ik", "manipulability"})
+_ASKS_THE_ROBOT = frozenset({"posture", "fk", "ik", "manipulability", "clearance"})
 
 
 @dataclass(frozen=True)
@@ -147,7 +148,7 @@ class _ValueCheck:
         self.findings: list[Diagnostic] = []
 
     def uses(self, root: tree.Node) -> None:
-        for node in tree.walk(root):
+        for node in own_nodes(root):
             match node:
                 case tree.NamedType(name=name):
                     self._type(name)

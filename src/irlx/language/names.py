@@ -20,6 +20,7 @@ from irlx.language.builtins import (
 )
 from irlx.language.data_lists import ImportedList, Imports, check_values
 from irlx.language.labels import check_jumps
+from irlx.language.obstacles import names_of_cell
 from irlx.language.scope import Scope
 from irlx.language.symbols import Routine, Symbol, declared_symbols, parameter_symbols
 
@@ -115,10 +116,15 @@ class NamePass:
                 self._unknown("IRL201", name, [*self.scope.known_values(), *self.scope.known_types()])
 
     def _uses(self, *roots: tree.Node) -> None:
+        of_cell: set[int] = set()
         for node in tree.walk(*roots):
             check = _CHECKS.get(type(node))
-            if check is not None:
+            if check is not None and id(node) not in of_cell:
                 check(self, node)
+            if isinstance(node, tree.FunctionCall):
+                routine = self.scope.value(node.name.key)
+                if routine is None or routine.kind not in ("function", "import"):
+                    of_cell |= names_of_cell(node)
 
     def _named_type(self, node: tree.NamedType) -> None:
         key = node.name.key

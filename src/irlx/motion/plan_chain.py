@@ -52,7 +52,8 @@ class PlannedChain(PlannedPath):
     PATH, `points` of that leg's points are done, else 0. `ends` (one for each leg touched): path parameter at
     which the leg hands over to the next, the last one `path.length`. `marks`: for each leg touched the path
     parameters next to its targets (via point, PATH points, the end). `joins` are the blended corners, `notes`
-    blends lost or cut. `time_left`: what is left of the TIME of a leg that is not done, s.
+    blends lost or cut. `time_left`: what is left of the TIME of a leg that is not done, s. `rooms`: how far
+    another corner may reach into the motion from its start and from its end, in the unit of s.
     """
 
     legs: int
@@ -62,6 +63,7 @@ class PlannedChain(PlannedPath):
     joins: tuple[Join, ...]
     notes: tuple[Diagnostic, ...]
     time_left: float | None = None
+    rooms: tuple[float, float] = (0.0, 0.0)
 
     def rest(self, legs: Sequence[Leg]) -> tuple[Leg, ...]:
         """What is left to do of the legs that this motion was planned from, for the next `plan_chain`."""
@@ -104,6 +106,7 @@ def plan_chain(legs: Sequence[Leg], start_rotation: Array, start_position: Array
         tuple(_joins(run, chained)),
         tuple(run.notes),
         time_left,
+        (run.edges[0].room[0], last.room[1]),
     )
 
 

@@ -42,7 +42,7 @@ def way_of(rows: MotionRows | None, start: Array, dt: float) -> tuple[float, flo
     """
     if rows is None:
         return 0.0, 0.0
-    duration = (len(rows) - rows.stops) * dt
+    duration = (rows.ticks - rows.stops) * dt
     if rows.path is not None and not rows.path.is_turn:
         return duration, float(rows.length)
     steps = np.diff(rows.tool_position, axis=0, prepend=start[None])

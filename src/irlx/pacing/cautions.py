@@ -68,7 +68,7 @@ def near_singular(rows: MotionRows, kinematics: Kinematics, place: Place) -> Cau
     path = rows.path
     if path is None:
         return None
-    values = _singular_values(rows.q[: len(path.demands)], path.free, kinematics)
+    values = _singular_values(rows.q, path, kinematics)
     if values.size == 0:
         return None
     shares = values[:, -1] / np.maximum(values[:, 0], np.finfo(float).tiny)
@@ -85,11 +85,18 @@ def near_singular(rows: MotionRows, kinematics: Kinematics, place: Place) -> Cau
     return Caution(report("IRL446", place, **data), -float(shares[worst]))
 
 
-def _singular_values(q: Array, free: NDArray[np.bool_], kinematics: Kinematics) -> Array:
-    """Singular values (N, k) of the scaled Jacobians of postures (N, n), largest first."""
-    if len(q) == 0 or not np.any(free):
+def _singular_values(q: Array, path: PathPart, kinematics: Kinematics) -> Array:
+    """Singular values (N, k) of the scaled Jacobians of the first N postures of q (M, n), largest first.
+
+    N is the number of the path's demands, whose poses are those of the postures.
+    """
+    if len(path.demands) == 0 or not np.any(path.free):
         return np.empty((0, 0))
-    jacobians = np.array([kinematics.here(posture)[1] for posture in q])[:, :, free]
+    found = [
+        kinematics.difference(posture, kinematics.target(demand.rotation, demand.position))[1]
+        for posture, demand in zip(q, path.demands, strict=False)
+    ]
+    jacobians = np.array(found)[:, :, path.free]
     return np.asarray(np.linalg.svd(jacobians * kinematics.row_scale[:, None], compute_uv=False))
 
 

@@ -21,6 +21,7 @@ from irlx.pacing.slowdown.model import Model
 from irlx.pacing.switches import check_joint_target
 from irlx.robot.limits import JointLimits
 from irlx.transform.criteria.combined import Weighted
+from irlx.transform.criteria.keeping_clear import KeepingClear
 
 Array = NDArray[np.float64]
 
@@ -84,10 +85,14 @@ def term_of(
     asked: Asked | None,
     limits: JointLimits,
 ) -> PostureTerm:
-    """The posture term of a motion, with what CRITERION adds to it."""
+    """The posture term of a motion, with what CRITERION and OBSTACLE add to it."""
     cyclic = situation.options.cyclic_posture
     term = posture_term(model, situation.q, plan.programmed, asked, cyclic, situation.qp)
-    return term.with_terms(_added_terms(situation, block, plan, limits), plan.programmed)
+    added = _added_terms(situation, block, plan, limits)
+    clearance = situation.clearance
+    if clearance is not None and any(pair.obstacle is not None for pair in clearance.distances.pairs):
+        added = (*added, Weighted(KeepingClear(clearance.distances, situation.free), 1.0))
+    return term.with_terms(added, plan.programmed)
 
 
 def _added_terms(

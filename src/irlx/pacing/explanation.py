@@ -12,6 +12,7 @@ from irlx.pacing.demand import Demand
 from irlx.pacing.rows import MotionRows, PathPart
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
+from irlx.transform.clearance import SideRows, TickClearance
 from irlx.transform.criteria.criterion import Criterion
 from irlx.transform.criteria.least_motion import LeastMotion
 from irlx.transform.step_bounds import BoundSource, StepBounds, StepLimiter
@@ -65,13 +66,28 @@ class PathTick:
 
 
 @dataclass(frozen=True)
+class NearRow:
+    """A pair that is kept apart: a link, an obstacle or another link, their distance (m) as the tick begins.
+
+    Row of the problem: coefficients @ d >= least, in m.
+    """
+
+    link: str
+    other: str
+    distance: float
+    coefficients: tuple[float, ...]
+    least: float
+
+
+@dataclass(frozen=True)
 class QuadraticTick:
     """The quadratic problem of the tick's first Newton step, as `build_tick` gives it; rad and m.
 
         min g'd + 1/2 d'Hd    subject to  J d = e,  lower <= d <= upper
 
     `joints`: names of the n free joints; `rows`: what the m rows are. `left` e (m,), `jacobian` J (m, n),
-    `gradient` g (n,), `hessian` H: its diagonal (n,), or whole (n, n). The bounds are those of the joints.
+    `gradient` g (n,), `hessian` H: its diagonal (n,), or whole (n, n). The bounds are those of the joints;
+    `near` are rows of a further kind, by which pairs of solids are kept apart.
     """
 
     joints: tuple[str, ...]
@@ -80,6 +96,7 @@ class QuadraticTick:
     jacobian: tuple[tuple[float, ...], ...]
     gradient: tuple[float, ...]
     hessian: tuple[float, ...] | tuple[tuple[float, ...], ...]
+    near: tuple[NearRow, ...] = ()
 
     @property
     def unknowns(self) -> int:
@@ -131,7 +148,7 @@ def explain_tick(
     row = tick - rows.first_tick
     before = np.vstack([rows_before, rows.q])
     step, last_step = before[row + 2] - before[row + 1], before[row + 1] - before[row]
-    asked = rows.path.demands if rows.path is not None else ()
+    asked = rows.path.demands if rows.path is not None and not rows.passes_corner(row) else ()
     demand = asked[row] if row < len(asked) else None
     limiter, speed = StepLimiter(limits, dt), last_step / dt
     joints = _joints(rows, row, limiter, step, speed, names, prismatic)
@@ -146,18 +163,25 @@ def explain_tick(
         (float(rows.path_position_error[row]), float(rows.path_orientation_error[row])),
         joints,
         _criteria(rows, row, demand, before[row + 1], step, weights),
-        _problem(rows, row, demand, before[row + 1], bounds, kinematics),
+        _problem(rows, row, demand, before[row + 1], bounds, kinematics, dt),
     )
 
 
 def _problem(
-    rows: MotionRows, row: int, demand: Demand | None, q: Array, bounds: StepBounds, kinematics: Kinematics
+    rows: MotionRows,
+    row: int,
+    demand: Demand | None,
+    q: Array,
+    bounds: StepBounds,
+    kinematics: Kinematics,
+    dt: float,
 ) -> QuadraticTick | None:
     if demand is None or rows.path is None:
         return None
     target = kinematics.target(demand.rotation, demand.position)
     free = rows.path.free
-    built = build_tick(kinematics, TickProblem(target, q, bounds, _chosen(rows.path, row, demand), free))
+    chosen, keeping = _chosen(rows.path, row, demand), _kept_clear(rows.path, row, q, dt)
+    built = build_tick(kinematics, TickProblem(target, q, bounds, chosen, free, keeping))
     names = kinematics.description.joint_names
     hessian = built.hessian.tolist()
     return QuadraticTick(
@@ -167,6 +191,27 @@ def _problem(
         tuple(tuple(line) for line in built.jacobian.tolist()),
         tuple(built.gradient.tolist()),
         tuple(tuple(line) for line in hessian) if built.hessian.ndim == 2 else tuple(hessian),
+        _near_rows(rows.path, keeping, built.sides),
+    )
+
+
+def _kept_clear(path: PathPart, row: int, q: Array, dt: float) -> TickClearance | None:
+    """What the tick of a row, which begins at posture q (n,), keeps clear."""
+    if path.clearance is None:
+        return None
+    elapsed = (path.demands[row].tick - path.first_tick) * dt
+    return path.clearance.tick(q, dt, elapsed)
+
+
+def _near_rows(path: PathPart, keeping: TickClearance | None, sides: SideRows | None) -> tuple[NearRow, ...]:
+    if path.clearance is None or keeping is None or sides is None:
+        return ()
+    pairs = [path.clearance.distances.pairs[number] for number in keeping.near.pairs.tolist()]
+    return tuple(
+        NearRow(pair.link, pair.other, distance, tuple(line), least)
+        for pair, distance, line, least in zip(
+            pairs, keeping.near.distance.tolist(), sides.matrix.tolist(), sides.lower.tolist(), strict=True
+        )
     )
 
 
@@ -189,6 +234,8 @@ def _way_of_pacing(rows: MotionRows, row: int) -> str:
         return "the robot stands"
     if rows.stops and row == len(rows) - 1:
         return "hold tick of a stop"
+    if rows.passes_corner(row):
+        return "row of a corner between a move of the joints and one along a path"
     if rows.path is None:
         return "row of a motion of the joints"
     return "row of a motion planned as a whole" if rows.path.planned else "ordinary tick"

@@ -18,19 +18,24 @@ from irlx.pacing.path_motion import Failure
 from irlx.pacing.row_check import BrokenBound
 from irlx.pacing.slowdown.clock_bounds import Governor
 from irlx.pacing.slowdown.ladder import TimedCurve
+from irlx.pacing.slowdown.planned import Refusal
+from irlx.pacing.too_near import told
 from irlx.pacing.walk import Halt
 from irlx.robot.description import RobotDescription
 from irlx.robot.kinematics import Kinematics, Sizes
 from irlx.robot.limits import JointLimits
+from irlx.transform.clearance import Clearance, TooNear
 from irlx.transform.nearest import Nearest, scaled_singular_values
 from irlx.transform.posture_search import closest, nearest_approach
 from irlx.transform.step_bounds import BoundSource, StepBounds
+from irlx.transform.tick import TickStatus
 
 Array = NDArray[np.float64]
 
 _AT_BOUND = 1e-6
 _NOISE = 1e-9
 _PLANNED_AT = 3e-4
+_HARDLY_CLEAR = 1e-3
 _LIMIT_NAMES = {
     BoundSource.POSITION: "position",
     BoundSource.SPEED: "speed",
@@ -42,12 +47,15 @@ _LIMIT_NAMES = {
 @dataclass(frozen=True)
 class Surroundings:
     """What the diagnosis needs to know of the move: robot, limits in force, free joints, and the clause or
-    switch of the program that narrowed a kind of limit, in words."""
+    switch of the program that narrowed a kind of limit, in words; what is kept clear, and the posture (n,)
+    that the move starts in."""
 
     kinematics: Kinematics
     limits: JointLimits
     free: NDArray[np.bool_]
     asked_by: Mapping[LimitKind, str] = field(default_factory=dict)
+    clearance: Clearance | None = None
+    start: Array | None = None
 
 
 def joint_value(robot: RobotDescription, joint: int, value: float, per: str = "") -> str:
@@ -89,14 +97,20 @@ def explain_failure(
 ) -> Diagnostic:
     """Diagnostic of a motion that no clock leads through.
 
-    IRL520 and IRL521: a place that no posture within the position limits reaches; IRL524: the clock
-    would stand still for a bound; IRL523: rows that pass a bound however slow.
+    IRL560: what would come too near; IRL520 and IRL521: a place that no posture within the position limits
+    reaches; IRL524: the clock would stand still for a bound; IRL523: rows that pass a bound however slow.
     """
     refusal, path = failure.refusal, plan.path
+    tick = first_tick + int(
+        plan.programmed.times_at(np.array([refusal.s]))[0] / plan.programmed.duration * plan.ticks
+    )
+    near = _too_near(refusal, around)
+    if near is not None and around.clearance is not None:
+        unit, scale = _way_unit(path)
+        way, length = f"{refusal.s * scale:.6g}", f"{path.length * scale:.6g} {unit}"
+        near_words = told(around.clearance, near)
+        return report("IRL560", place, tick=tick, way=way, length=length, **near_words)
     if refusal.solution is not None:
-        tick = first_tick + int(
-            plan.programmed.times_at(np.array([refusal.s]))[0] / plan.programmed.duration * plan.ticks
-        )
         nowhere = np.full(refusal.solution.q.size, np.inf)
         source = np.full(nowhere.size, BoundSource.POSITION, dtype=np.int8)
         poses = path.poses(np.array([refusal.s]))
@@ -110,6 +124,19 @@ def explain_failure(
     if broken is None:
         raise ArithmeticError("a motion was refused without a reason: the planner is at fault")
     return explain_broken_row(broken, first_tick, around.kinematics.description, place)
+
+
+def _too_near(refusal: Refusal, around: Surroundings) -> TooNear | None:
+    """The pair for which a motion is refused: that which is nearest where limits alone would let it go on."""
+    if refusal.near is not None:
+        return refusal.near
+    solution = refusal.solution
+    if solution is None or around.clearance is None:
+        return None
+    found = around.clearance.nearest(solution.q, solution.q if around.start is None else around.start)
+    if found is None or solution.status is TickStatus.TOO_NEAR:
+        return found
+    return found if found.distance <= found.floor + _HARDLY_CLEAR else None
 
 
 def _explain_standing(

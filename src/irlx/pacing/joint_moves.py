@@ -26,6 +26,7 @@ from irlx.pacing.rows import MotionRows, handed_out, held
 from irlx.pacing.situation import Situation
 from irlx.pacing.snap import SAME_VALUE
 from irlx.pacing.switches import check_joint_target
+from irlx.pacing.too_near import check_rows
 from irlx.robot.limits import JointLimits
 
 Array = NDArray[np.float64]
@@ -97,12 +98,21 @@ def _motion(
     q = motion.postures(dt, count)
     _check_rows(situation, q, in_force.limits, dt * motion.ticks / count, place)
     check_conditions(q, situation.kinematics, place)
+    check_rows(
+        situation.clearance,
+        q,
+        situation.q,
+        (situation.tick + 1, dt * motion.ticks / count),
+        "MOVE PTP",
+        place,
+    )
     s = programmed_clock(motion.law, motion.ticks, dt, count).s
     rows = replace(_rows(situation, moves[0], q, s), span=motion.ticks + 1)
     handed: list[MotionRows | None] = [rows]
     if plan.legs > 1:
         handed = handed_out(rows, moves[: plan.legs], plan.ends)
-    return Motion(tuple(handed), in_force)
+    last = plan.ends[-1] - (plan.ends[-2] if plan.legs > 1 else 0.0)
+    return Motion(tuple(handed), in_force, rooms=(0.5 * plan.ends[0], 0.5 * last))
 
 
 def _rows(situation: Situation, block: MoveBlock, q: Array, s: Array) -> MotionRows:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from irlx.blocks import (
+    AskClearance,
     AskManipulability,
     AskPose,
     Block,
@@ -29,12 +30,16 @@ class Lookahead:
 
     A group is what `take` and `stop` give back: one block of any kind, or moves that may pass their targets,
     with the signals between them; only after the last one the robot surely stands. Blends that a group cannot
-    have because of what comes behind it are noted.
+    have because of what comes behind it are noted. While `obstacles_move`, distances from them depend on the
+    time, so that questions for them stop the robot.
     """
 
-    def __init__(self, locate: Callable[[Origin], Place], notes: Notes) -> None:
+    def __init__(
+        self, locate: Callable[[Origin], Place], notes: Notes, *, obstacles_move: bool = False
+    ) -> None:
         self._locate = locate
         self._notes = notes
+        self._obstacles_move = obstacles_move
         self._waiting: list[Block] = []
         self._moves = 0
 
@@ -57,6 +62,9 @@ class Lookahead:
         """Groups to carry out before a question is answered: none where its answer is the same anywhere."""
         if isinstance(question, AskPose | AskManipulability):
             return []
+        if isinstance(question, AskClearance):
+            why = "the answer depends on where the obstacles are by then"
+            return self.stop(question.origin, why) if self._obstacles_move else []
         return self.stop(question.origin, "the answer depends on where the robot stands")
 
     def stop(self, where: Origin | None, why: str) -> list[tuple[Block, ...]]:
@@ -83,8 +91,6 @@ _TOO_MANY = f"at most {WINDOW} moves are joined"
 
 def _apart(first: MoveBlock, second: MoveBlock) -> str:
     """Why two moves cannot be joined whatever their geometry, or ''."""
-    if (first.kind is MoveKind.PTP) is not (second.kind is MoveKind.PTP):
-        return "a move of the joints and one along a path do not join"
     for move in (first, second):
         if move.limits or move.criteria:
             return "a WITH clause holds for one of the two moves alone"
@@ -92,6 +98,18 @@ def _apart(first: MoveBlock, second: MoveBlock) -> str:
             continue
         if _draws(move):
             return "one of the two moves is to end in a posture"
+    if (first.kind is MoveKind.PTP) is (second.kind is MoveKind.PTP):
+        return ""
+    return _apart_in_kind(first, second)
+
+
+def _apart_in_kind(first: MoveBlock, second: MoveBlock) -> str:
+    """Why a move of the joints and one along a path cannot be joined, or ''."""
+    for move in (first, second):
+        if isinstance(move.target, JointIncrement):
+            return "joint increments count from the posture in which the move before has ended"
+        if move.law.duration is not None:
+            return "beside a move of the other kind TIME counts from stop to stop"
     return ""
 
 

@@ -17,13 +17,14 @@ from irlx.blocks import (
     LimitClause,
     LimitKind,
     LimitSwitchBlock,
+    ObstacleBlock,
     Origin,
 )
 from irlx.robot.limits import JointLimits
 
 Array = NDArray[np.float64]
 
-SwitchBlock = LimitSwitchBlock | FreezeBlock | CyclicBlock | CriterionBlock
+SwitchBlock = LimitSwitchBlock | FreezeBlock | CyclicBlock | CriterionBlock | ObstacleBlock
 """Blocks that change the options in force."""
 
 
@@ -41,7 +42,7 @@ class Options:
 
     `limits` maps a kind to its switch, `criteria` a name to what CRITERION chose; `frozen` and `frozen_by`
     the joints held (numbers from 1) and the switch; `cyclic_posture` (n,) the posture that CYCLICSTART
-    stored, None while it is off.
+    stored, None while it is off; `obstacles` those kept clear of, by casefolded name.
     """
 
     limits: dict[LimitKind, LimitSwitchBlock] = field(default_factory=dict)
@@ -49,6 +50,7 @@ class Options:
     frozen_by: FreezeBlock | None = None
     cyclic_posture: Array | None = None
     criteria: dict[str, CriterionClause] = field(default_factory=dict)
+    obstacles: dict[str, ObstacleBlock] = field(default_factory=dict)
 
     def after(self, block: SwitchBlock, q: Array) -> Options:
         """Options once `block` has executed at posture q (n,). A switch of the same kind is replaced."""
@@ -61,6 +63,10 @@ class Options:
             if block.choice is not None:
                 criteria[block.name] = CriterionClause(block.choice, block.origin)
             return replace(self, criteria=criteria)
+        if isinstance(block, ObstacleBlock):
+            key = block.name.casefold()
+            others = {name: switch for name, switch in self.obstacles.items() if name != key}
+            return replace(self, obstacles={**others, key: block} if block.active else others)
         limits = {kind: switch for kind, switch in self.limits.items() if kind is not block.kind}
         if block.range is not None:
             limits[block.kind] = block

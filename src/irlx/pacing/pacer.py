@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from itertools import takewhile
 
 import numpy as np
 from numpy.typing import NDArray
 
 from irlx.blocks import (
+    AskAvoidingPosture,
+    AskClearance,
     AskInput,
     AskInputChange,
     AskJointBounds,
@@ -24,6 +27,7 @@ from irlx.blocks import (
     MachineQuestion,
     MoveBlock,
     MoveKind,
+    ObstacleBlock,
     Origin,
     PauseBlock,
     PoseTarget,
@@ -34,11 +38,16 @@ from irlx.blocks import (
 )
 from irlx.diagnostics import Diagnostic, Place
 from irlx.pacing.answers import answer_of_bounds, answer_of_last_move, answer_of_posture, way_of
+from irlx.pacing.avoiding_posture import avoiding_posture
 from irlx.pacing.beyond import posture_beyond, ticks_beyond
+from irlx.pacing.carried import Carried, are_of_one_kind, crossed, passes
+from irlx.pacing.clearance_answers import Clearances, pairs_of
 from irlx.pacing.executed import Executed
 from irlx.pacing.inputs import answer_of_inputs
 from irlx.pacing.joint_moves import move_joints
+from irlx.pacing.kept_clear import kept_clear
 from irlx.pacing.motion import Motion
+from irlx.pacing.nearest_rows import nearest_rows
 from irlx.pacing.notes import Notes
 from irlx.pacing.options import LimitsInForce, Options, SwitchBlock
 from irlx.pacing.path_moves import move_along_path
@@ -50,7 +59,9 @@ from irlx.pacing.rows import MotionRows
 from irlx.pacing.situation import PacingSetup, Situation
 from irlx.pacing.snap import snapped
 from irlx.pacing.switches import check_freeze, check_inside, check_limit
+from irlx.pacing.too_near import check_rows, passed_by, standing
 from irlx.pacing.waiting import waited
+from irlx.transform.clearance import Clearance
 from irlx.transform.qp.proxqp import ProxQpSolver
 from irlx.transform.tick import TickSolver
 
@@ -72,11 +83,16 @@ class Pacer:
         self.warnings: list[Diagnostic] = []
         self.notes = Notes(self.warnings)
         self._last_way = (0.0, 0.0)
+        self._distances = Clearances(setup.kinematics, setup.scene)
+        self._links_checked = False
+        self._clearance = kept_clear(setup.kinematics, setup.scene, self.options)
+        self._rest: MoveBlock | None = None
 
     def answer(self, question: MachineQuestion) -> tuple[float, ...]:
         """Answer to a question of the interpreter, all blocks before it executed.
 
-        Raises PacingError, IRL522, for the posture of a pose that none reaches.
+        Raises PacingError: IRL522 for the posture of a pose that none reaches; IRL573, IRL574 where there is
+        no distance to tell.
         """
         if isinstance(question, AskPosture):
             return tuple(float(value) for value in self.q)
@@ -85,6 +101,11 @@ class Pacer:
             return answer_of_inputs(question, setup.inputs, self.tick * setup.dt, setup.dt, self.locate)
         if isinstance(question, AskPose | AskManipulability):
             return answer_of_posture(question, self.setup.kinematics)
+        if isinstance(question, AskClearance):
+            time = self.tick * self.setup.dt
+            return self._distances.answer(question, time, self.locate(question.origin))
+        if isinstance(question, AskAvoidingPosture):
+            return avoiding_posture(question, self._situation)
         if isinstance(question, AskLastMove):
             return answer_of_last_move(*self._last_way)
         if isinstance(question, AskJointBounds):
@@ -93,6 +114,11 @@ class Pacer:
         target, place = PoseTarget(question.position, question.orientation), self.locate(question.origin)
         near = np.array(question.near) if isinstance(question, AskNearestPosture) else None
         return tuple(posture_of_pose(target, near, situation, situation.in_force(), place).tolist())
+
+    @property
+    def _clear_from_now(self) -> Clearance | None:
+        """What is kept clear in a motion that begins now."""
+        return None if self._clearance is None else self._clearance.beginning(self.tick * self.setup.dt)
 
     @property
     def _situation(self) -> Situation:
@@ -107,6 +133,7 @@ class Pacer:
             self.locate,
             self.warnings,
             self.notes,
+            self._clear_from_now,
         )
 
     @property
@@ -128,24 +155,76 @@ class Pacer:
             yield Executed(block, tick, self.execute(block))
             return
         waiting = [self.settled(block) for block in group]
-        begins = True
+        stood = self._situation.pose[1]
+        for carried in self._joined(waiting):
+            for executed in carried.parts:
+                stood = self._note_way(executed, stood)
+                yield executed
+
+    def _joined(self, waiting: list[Block]) -> Iterator[Carried]:
+        """What becomes of moves with signals between them: motions, joined where joint space meets a path.
+
+        A motion that may be joined to the next one comes when that is known.
+        """
+        held: Carried | None = None
         while waiting:
-            first = waiting[0]
-            if not isinstance(first, MoveBlock):
-                yield Executed(waiting.pop(0), self.tick, None)
-                continue
-            motion = self._motion([block for block in waiting if isinstance(block, MoveBlock)])
-            for rows in motion.rows:
+            try:
+                carried = self._carried(waiting)
+            except Exception:
+                if held is not None:
+                    yield held
+                raise
+            if held is not None:
+                held, carried = self._crossed(held, carried)
+                yield held
+            held = carried if self._may_cross(carried, waiting) else None
+            if held is None:
+                yield carried
+
+    def _carried(self, waiting: list[Block]) -> Carried:
+        """The first motion that blocks become, taken out of them, with the signals before and inside it."""
+        parts: list[Executed] = []
+        moves = [block for block in waiting if isinstance(block, MoveBlock)]
+        if not moves:
+            parts = [Executed(block, self.tick, None) for block in waiting]
+            waiting.clear()
+            return Carried(tuple(parts))
+        motion = self._motion(_of_one_kind(moves))
+        begins = waiting[0] is not self._rest
+        for found in motion.rows:
+            block = waiting.pop(0)
+            while not isinstance(block, MoveBlock):
+                parts.append(Executed(block, self.tick, None))
                 block = waiting.pop(0)
-                while not isinstance(block, MoveBlock):
-                    yield Executed(block, self.tick, None)
-                    block = waiting.pop(0)
-                tick = self.tick
-                yield Executed(block, tick, self._move(rows, motion, begins), begins)
-                begins = True
-            if motion.rest is not None:
-                waiting.insert(0, motion.rest)
-                begins = False
+            tick = self.tick
+            parts.append(Executed(block, tick, self._moved(found, motion.in_force), begins))
+            begins = True
+        self._rest = motion.rest
+        if motion.rest is not None:
+            waiting.insert(0, motion.rest)
+        return Carried(tuple(parts), motion.rooms)
+
+    def _may_cross(self, carried: Carried, waiting: Sequence[Block]) -> bool:
+        """Whether a motion may be joined to the next one, of the other kind, by overlapping it."""
+        last = carried.last
+        following = next((block for block in waiting if isinstance(block, MoveBlock)), None)
+        if last is None or following is None or not passes(last.block):
+            return False
+        # A dry run has no ticks to overlap; what modifies a demand counts on its tick, and an obstacle that
+        # moves is where it is at that.
+        able = not (self._setup.resolution.is_coarse or self._setup.modifiers or self._setup.scene.moves)
+        return able and self._rest is None and not are_of_one_kind(last.block, following)
+
+    def _crossed(self, held: Carried, carried: Carried) -> tuple[Carried, Carried]:
+        """Two motions as they are joined, or as they were; a note says what became of the corner."""
+        limits = self._situation.in_force().limits
+        done = crossed(
+            held, carried, self._setup.kinematics, limits, self._setup.dt, self.locate, self._clearance
+        )
+        for note in done.notes:
+            self.notes.add(note)
+        self.tick -= done.saved
+        return done.motions
 
     def stand_beyond(self, move: MoveBlock) -> None:
         """Put the robot where it would stand behind a move that it cannot do, and the time with it.
@@ -163,8 +242,10 @@ class Pacer:
         Raises PacingError or MotionError with the place of the block; the state stays at its start.
         """
         if isinstance(block, MoveBlock):
-            motion = self._motion([block])
-            return self._move(motion.rows[0], motion)
+            motion, start = self._motion([block]), self._situation.pose[1]
+            rows = self._moved(motion.rows[0], motion.in_force)
+            self._last_way = way_of(rows, start, self._setup.dt)
+            return rows
         if isinstance(block, ReconfigureBlock):
             return self._reconfigure(block)
         place = self.locate(block.origin)
@@ -178,16 +259,24 @@ class Pacer:
             from irlx.pacing.criteria import check_criterion
 
             check_criterion(block.choice, self._robot, place)
+        if isinstance(block, ObstacleBlock):
+            pairs_of(block.name, self.setup.kinematics, self.setup.scene, place)
         if isinstance(block, ToolBlock | WeightsBlock):
             self._setup = refitted(self._setup, block, place)
             self._solver = TickSolver(self._setup.kinematics, self.qp)
         if isinstance(block, SwitchBlock):
             self.options = self.options.after(block, self.q)
+        if isinstance(block, ToolBlock | ObstacleBlock):
+            self._clearance = kept_clear(self._setup.kinematics, self._setup.scene, self.options)
+        if isinstance(block, ObstacleBlock) and block.active:
+            names = [obstacle.name for obstacle in self._setup.scene.members(block.name)]
+            self.warnings += standing(self._clear_from_now, self.q, names, place)
         return None
 
     def _motion(self, moves: list[MoveBlock]) -> Motion:
         """The first motion from stop to stop that moves become."""
         block = moves[0]
+        self._check_links(self.locate(block.origin))
         for clause in block.limits:
             place = self.locate(clause.origin)
             self.warnings += check_limit(clause, self._robot, self.setup.limits, self.q, place)
@@ -199,24 +288,42 @@ class Pacer:
             return move_joints(situation, moves, in_force)
         return move_along_path(situation, moves, in_force)
 
-    def _move(self, rows: MotionRows | None, motion: Motion, begins: bool = True) -> MotionRows | None:
-        """`_moved` for a move, or a further part of one that had to stop on its way."""
-        way = way_of(rows, self._situation.pose[1], self._setup.dt)
-        before = (0.0, 0.0) if begins else self._last_way
-        self._last_way = (before[0] + way[0], before[1] + way[1])
-        return self._moved(rows, motion.in_force)
+    def _check_links(self, place: Place) -> None:
+        """Before the first motion: whether the robot stands clear of itself."""
+        if not self._links_checked:
+            self._links_checked = True
+            self.warnings += standing(self._clear_from_now, self.q, self._robot.solids, place)
+
+    def _note_way(self, executed: Executed, start: Array) -> Array:
+        """Keep duration and way of the last move, which starts with the tool at a position (3,) m, and give
+        back where it ends; a further part of a move that had to stop on its way is added to it."""
+        rows = executed.rows
+        if isinstance(executed.block, MoveBlock):
+            way = way_of(rows, start, self._setup.dt)
+            before = (0.0, 0.0) if executed.begins else self._last_way
+            self._last_way = (before[0] + way[0], before[1] + way[1])
+        return start if rows is None else rows.tool_position[-1]
 
     def _moved(self, rows: MotionRows | None, in_force: LimitsInForce) -> MotionRows | None:
         """The rows of a motion with its limits, the robot now standing at their end."""
         if rows is None:
             return None
+        dt = self.setup.dt * rows.ticks / len(rows)
+        clear = self._clear_from_now
+        nearest = nearest_rows(clear, rows.q, dt)
+        place = self.locate(rows.block.origin)
+        if rows.stops:
+            self.warnings += passed_by(clear, rows.q, (rows.first_tick, dt), place)
         self.q = rows.q[-1]
         self.tick += rows.ticks
-        return replace(rows, limits=in_force.limits)
+        return replace(rows, limits=in_force.limits, nearest=nearest)
 
     def _wait(self, block: WaitBlock | PauseBlock, place: Place) -> MotionRows | None:
         setup = self.setup
         rows = waited(block, self.q, setup.dt, self.tick + 1, setup.kinematics, place, setup.resolution)
+        if rows is not None and setup.scene.moves:
+            ticking = self.tick + 1, setup.dt * rows.ticks / len(rows)
+            check_rows(self._clear_from_now, rows.q, self.q, ticking, "while it waits something", place)
         return self._moved(rows, self._situation.in_force())
 
     def _reconfigure(self, block: ReconfigureBlock) -> MotionRows | None:
@@ -231,3 +338,8 @@ class Pacer:
         why = why_left(found.flow.end, left, found.held, self._robot)
         self.warnings += posture_left(left, why, self._robot, place)
         return self._moved(found.rows, in_force)
+
+
+def _of_one_kind(moves: Sequence[MoveBlock]) -> list[MoveBlock]:
+    """The first moves that are all of the joints, or all along paths."""
+    return list(takewhile(lambda move: are_of_one_kind(moves[0], move), moves))

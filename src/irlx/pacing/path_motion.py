@@ -88,6 +88,10 @@ def pace_path(motion: PathMotion, model: Model, solver: TickSolver) -> PacedPath
 
 
 def _paced(motion: PathMotion, model: Model, solver: TickSolver) -> PacedPath | Failure:
+    if motion.resolution.is_coarse:
+        seen = _glanced(motion, model)
+        if seen is not None:
+            return seen
     walked, broken = _walked(motion, model, solver, thorough=False)
     kept = walked.halt is None and broken is None
     if kept and not (motion.term.draws and _lags(walked.active)):
@@ -109,6 +113,21 @@ def _paced(motion: PathMotion, model: Model, solver: TickSolver) -> PacedPath | 
     return Failure(walked.halt, broken, found)
 
 
+def _glanced(motion: PathMotion, model: Model) -> PacedPath | None:
+    """A few rows of a motion that surely keeps away from all limits, None of any other."""
+    # Imported here: only a dry run has a use for it.
+    from irlx.pacing.glance import Glanced, glance
+
+    plan = motion.plan
+    if motion.modifiers:
+        return None
+    asked = Glanced(plan.path, plan.law, plan.ticks, motion.start, motion.term, motion.dt, motion.first_tick)
+    seen = glance(asked, model)
+    if seen is None:
+        return None
+    return PacedPath(seen.q, np.zeros(seen.q.shape, dtype=np.int8), seen.demands, 0, motion.term)
+
+
 def _walked(
     motion: PathMotion, model: Model, solver: TickSolver, thorough: bool
 ) -> tuple[Walk, BrokenBound | None]:
@@ -126,6 +145,7 @@ def _walked(
         motion.start,
         asked,
         thorough,
+        model.clearance,
     )
     if walked.halt is not None:
         return walked, None

@@ -92,7 +92,8 @@ def _motion(
     term = term_of(situation, block, plan, model, drawn, in_force.limits)
     paced = pace_path(_path_motion(situation, plan, term, place), model, situation.solver)
     if isinstance(paced, Failure):
-        around = Surroundings(situation.kinematics, in_force.limits, situation.free, in_force.told)
+        told, clear = in_force.told, situation.clearance
+        around = Surroundings(situation.kinematics, in_force.limits, situation.free, told, clear, situation.q)
         goal = goal_shortfall(around, plan.path.end_rotation, plan.path.end_position, situation.q)
         raise PacingError(explain_failure(paced, around, plan, situation.tick + 1, goal, place))
     warn_of_posture_left(situation, drawn, paced.q[-1], block, place)
@@ -101,7 +102,7 @@ def _motion(
     handed: list[MotionRows | None] = [rows]
     if touched > 1:
         handed = handed_out(rows, moves[:touched], plan.ends)
-    return Motion(tuple(handed), in_force, rest)
+    return Motion(tuple(handed), in_force, rest, plan.rooms)
 
 
 def _rest(block: MoveBlock, plan: PlannedChain) -> MoveBlock:
@@ -154,13 +155,22 @@ def _rows(situation: Situation, block: MoveBlock, plan: PlannedChain, paced: Pac
             paced.planned,
             paced.slowings,
             situation.free,
+            clearance=situation.clearance,
+            first_tick=situation.tick + 1,
         ),
         span=paced.demands[-1].tick + 1 - situation.tick,
     )
 
 
 def _tool(situation: Situation, paced: PacedPath) -> tuple[Array, Array, Array, Array]:
-    """Distance (m) and angle (rad) of rows from the demands, and their tool poses."""
+    """Distance (m) and angle (rad) of rows from the demands, and their tool poses.
+
+    A dry run, whose rows nobody gets, takes the demands for them.
+    """
+    if situation.setup.resolution.is_coarse:
+        rotation, position = _wanted(paced.demands)
+        nothing = np.zeros(len(paced.q))
+        return nothing, nothing, position, rotation
     kinematics = situation.kinematics
     rotation, position = kinematics.tool_poses(paced.q)
     distance, angle = pose_errors(kinematics.task, _wanted(paced.demands), (rotation, position))

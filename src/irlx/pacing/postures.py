@@ -14,7 +14,7 @@ from irlx.pacing.options import LimitsInForce
 from irlx.pacing.posture_left import beyond_limits
 from irlx.pacing.reconfigure import settled_konf
 from irlx.pacing.situation import Situation
-from irlx.transform.posture_search import nearest_posture
+from irlx.transform.posture_search import nearest_posture, posture_near
 
 Array = NDArray[np.float64]
 
@@ -53,9 +53,12 @@ def posture_of_pose(
     drawn_to = next(posture for posture in (near, cyclic, q) if posture is not None)
     start = np.where(situation.free, drawn_to, q)
     weights, free = situation.setup.weights, situation.free
-    search = nearest_posture(
-        kinematics, situation.qp, rotation, position, start, weights, in_force.limits, free
-    )
+    asked = kinematics, situation.qp, rotation, position, start, weights, in_force.limits, free
+    if situation.setup.resolution.is_coarse:
+        found = posture_near(*asked)
+        if found is not None:
+            return found
+    search = nearest_posture(*asked)
     if search.q is None:
         distance, angle = search.nearest.distance * 1000.0, np.degrees(search.nearest.angle)
         raise PacingError(report("IRL522", place, distance=f"{distance:.6g}", angle=f"{angle:.4g}"))

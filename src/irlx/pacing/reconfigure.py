@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from irlx.blocks import ReconfigureBlock
-from irlx.diagnostics import Place
+from irlx.diagnostics import Place, report
 from irlx.motion.plan_joint_line import RAMP_TIME
 from irlx.motion.whole_ticks import ticks_of_move
 from irlx.pacing.clock import Clock
@@ -26,6 +26,7 @@ from irlx.pacing.slowdown.ladder import TimedCurve
 from irlx.pacing.slowdown.model import Model
 from irlx.pacing.slowdown.planned import PlannedMotion, Refusal, Ticking, rows_on_clock
 from irlx.pacing.snap import SAME_VALUE
+from irlx.pacing.too_near import told
 from irlx.pacing.touching import touching
 from irlx.robot.limits import JointLimits
 from irlx.transform.posture_flow import PostureFlow, posture_flow
@@ -34,6 +35,7 @@ from irlx.transform.qp.solver import QpSolver
 Array = NDArray[np.float64]
 
 _WIDENINGS = (4.0, 16.0, 64.0)
+_NO_WAY = 1e-10
 
 
 @dataclass(frozen=True)
@@ -67,7 +69,7 @@ def reconfigured(
     free = model.free & (_either_way(limits, "speed") > 0.0) & (_either_way(limits, "acceleration") > 0.0)
     mobile = replace(model, limits=limits, free=free)
     flow = posture_flow(model.kinematics, q, konf, model.weights, limits, free, qp)
-    if len(flow.points) == 1:
+    if float(np.sum(np.abs(np.diff(flow.points, axis=0)))) <= _NO_WAY:
         return Reconfigured(flow, None, ~free)
     found = _planned(mobile, flow, _ticking(mobile, q, dt, place, resolution), first_tick, place)
     return Reconfigured(flow, _motion_rows(model, block, q, found, dt, first_tick), ~free)
@@ -121,6 +123,9 @@ def _planned(
             break
         found = _on_curve(model, flow.further_inside(widening), ticking)
     if isinstance(found, Refusal):
+        if found.near is not None and model.clearance is not None:
+            words, tick = told(model.clearance, found.near), first_tick + found.row
+            raise PacingError(report("IRL561", place, word="RECONFIGURATION", tick=tick, **words))
         if found.broken is None:
             raise ArithmeticError("a posture curve was refused without a reason: the planner is at fault")
         raise PacingError(explain_broken_row(found.broken, first_tick, model.kinematics.description, place))

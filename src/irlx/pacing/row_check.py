@@ -31,12 +31,19 @@ def broken_bound(start: Array, rows: Array, limits: JointLimits, dt: float) -> B
     Speeds and accelerations are backward differences; the last row must be a hold, so that the
     deceleration into the stop is judged too.
     """
-    rest = np.vstack([start, start, rows])
-    speeds = np.diff(rest, axis=0) / dt
+    return broken_on_the_way(np.vstack([start, start, rows]), limits, dt)
+
+
+def broken_on_the_way(rows: Array, limits: JointLimits, dt: float) -> BrokenBound | None:
+    """First bound that rows (N + 2, n) break which follow the two first of them, however these move, or None.
+
+    `BrokenBound.row` counts from the third row.
+    """
+    speeds = np.diff(rows, axis=0) / dt
     accelerations = np.diff(speeds, axis=0) / dt
-    speed_slack, acceleration_slack = rounding_allowance(rest, dt)
+    speed_slack, acceleration_slack = rounding_allowance(rows, dt)
     found = [
-        _first(LimitKind.POSITION, rows, limits.position_lower, limits.position_upper, 0.0, 0.0),
+        _first(LimitKind.POSITION, rows[2:], limits.position_lower, limits.position_upper, 0.0, 0.0),
         _first(
             LimitKind.SPEED, speeds[1:], limits.speed_lower, limits.speed_upper, LIMIT_EXCESS, speed_slack
         ),

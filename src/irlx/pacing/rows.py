@@ -12,9 +12,11 @@ from numpy.typing import NDArray
 from irlx.blocks import MoveBlock, PauseBlock, ReconfigureBlock, WaitBlock
 from irlx.motion.time_law import TimeLaw
 from irlx.pacing.demand import Demand
+from irlx.pacing.nearest_rows import NearestRows
 from irlx.pacing.posture_term import PostureTerm
 from irlx.pacing.slowing import Slowing
 from irlx.robot.limits import JointLimits
+from irlx.transform.clearance import Clearance
 
 Array = NDArray[np.float64]
 
@@ -28,6 +30,7 @@ class PathPart:
     planned as a whole because ordinary ticks would have broken a bound; `slowings`: the stretches that took
     longer than programmed; `free` (n,): the joints that were not frozen. Of a move that is joined to others
     the path parameter counts over all of them: it `begin`s there, and was `s_before` in the row before.
+    `clearance` is what the motion, whose first tick is `first_tick`, keeps clear.
     """
 
     demands: tuple[Demand, ...]
@@ -40,6 +43,8 @@ class PathPart:
     free: NDArray[np.bool_]
     begin: float = 0.0
     s_before: float = 0.0
+    clearance: Clearance | None = None
+    first_tick: int = 0
 
 
 @dataclass(frozen=True)
@@ -51,7 +56,9 @@ class MotionRows:
     pose; `active` (N, n): 0, or the sign of the side times (1 + BoundSource) of the bound that holds
     a joint back; `s` (N,) path parameter of `length`; `iterations` Newton steps in all; `span` ticks that the
     rows of a dry run stand for, 0 where each is a tick;
-    `limits` in force, None for the robot's own; `path`, None where no path was asked for.
+    `limits` in force, None for the robot's own; `path`, None where no path was asked for; `nearest` what
+    comes nearest where something is kept clear. `corner_rows` so many of the first and of the last rows pass
+    a corner between joint space and a path (`Crossing`): they lie on no path.
     """
 
     block: MoveBlock | ReconfigureBlock | WaitBlock | PauseBlock
@@ -69,6 +76,8 @@ class MotionRows:
     path: PathPart | None = None
     stops: bool = True
     span: int = 0
+    nearest: NearestRows | None = None
+    corner_rows: tuple[int, int] = (0, 0)
 
     def __len__(self) -> int:
         return int(self.q.shape[0])
@@ -77,6 +86,11 @@ class MotionRows:
     def ticks(self) -> int:
         """Ticks that the motion takes, its hold tick included."""
         return self.span or len(self)
+
+    def passes_corner(self, row: int) -> bool:
+        """Whether a row, counted from 0, lies in a corner between joint space and a path."""
+        first, last = self.corner_rows
+        return row < first or row >= len(self) - last
 
 
 def held(rows: Array) -> Array:
@@ -140,6 +154,8 @@ def _first_tick(rows: MotionRows, row: int) -> int:
     """The first tick that a row stands for; the last row, a hold, stands for one."""
     if row == len(rows):
         return rows.first_tick + rows.ticks
+    if rows.path is not None and row > 0:
+        return rows.path.demands[row - 1].tick + 1
     return rows.first_tick + round(row * (rows.ticks - 1) / (len(rows) - 1))
 
 

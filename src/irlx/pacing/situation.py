@@ -21,6 +21,8 @@ from irlx.pacing.slowdown.model import Model
 from irlx.robot.description import RobotDescription
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
+from irlx.scene.scene import Scene
+from irlx.transform.clearance import Clearance
 from irlx.transform.qp.proxqp import ProxQpSolver
 from irlx.transform.tick import TickSolver
 
@@ -33,7 +35,7 @@ class PacingSetup:
 
     A move may take `max_slow` times as long as programmed, and a tick; `inputs` are what the world says;
     `resolution` tells how finely motions are worked out; motions are planned with `planned_share`
-    of each speed and acceleration limit.
+    of each speed and acceleration limit; `scene` is what stands around.
     """
 
     kinematics: Kinematics
@@ -46,13 +48,15 @@ class PacingSetup:
     inputs: Inputs = field(default_factory=Inputs)
     resolution: Resolution = EVERY_TICK
     planned_share: float = 1.0
+    scene: Scene = field(default_factory=Scene)
 
 
 @dataclass(frozen=True)
 class Situation:
     """The robot at rest in posture `q` (n,) at a tick, the options in force, and what solves its ticks.
 
-    `warnings` and `notes` collect what is found on the way, also before an error.
+    `warnings` and `notes` collect what is found on the way, also before an error; `clearance` is what is kept
+    clear.
     """
 
     setup: PacingSetup
@@ -64,6 +68,7 @@ class Situation:
     locate: Callable[[Origin], Place]
     warnings: list[Diagnostic]
     notes: Notes
+    clearance: Clearance | None = None
 
     @property
     def kinematics(self) -> Kinematics:
@@ -97,4 +102,5 @@ class Situation:
 
     def model(self, in_force: LimitsInForce) -> Model:
         """What planning needs to know of the robot."""
-        return Model(self.kinematics, in_force.limits, self.setup.weights, self.free)
+        setup = self.setup
+        return Model(self.kinematics, in_force.limits, setup.weights, self.free, self.clearance)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.pacing.demand import Demand
+from irlx.transform.clearance import Clearance
 from irlx.transform.criteria.criterion import Criterion
 from irlx.transform.step_bounds import StepBounds, StepLimiter
 from irlx.transform.tick import TickSolution, TickSolver
@@ -54,11 +55,13 @@ def walk(
     start: Array,
     demands: Iterable[Demand],
     thorough: bool = True,
+    clearance: Clearance | None = None,
 ) -> Walk:
     """Walk from rest at posture `start` (n,) through the demands, one tick each.
 
     `limiter` holds the limits in force, `criterion_of` gives the criterion of a tick, `free` (n,) is True
-    for the joints that are not frozen, `thorough` is that of `TickSolver.solve`.
+    for the joints that are not frozen, `thorough` is that of `TickSolver.solve`, `clearance` what is kept
+    clear of.
     """
     q, speed = start, np.zeros_like(start)
     joints = start.size
@@ -72,8 +75,15 @@ def walk(
     for demand in demands:
         bounds = limiter.bounds(q, speed)
         target = solver.kinematics.target(demand.rotation, demand.position)
-        problem = TickProblem(target, q, bounds, criterion_of(demand), free)
-        solution = solver.solve(problem, seeds.next(), thorough)
+        elapsed = len(rows) * limiter.dt
+        keeping = clearance.tick(q, limiter.dt, elapsed) if clearance is not None else None
+        problem = TickProblem(target, q, bounds, criterion_of(demand), free, keeping)
+        seed = seeds.next()
+        solution = solver.solve(problem, seed, thorough)
+        unseen = clearance if keeping is None and solution.solved else None
+        if unseen is not None and unseen.nears(solution.q, elapsed + limiter.dt):
+            problem = problem._replace(clearance=unseen.watched_tick(q, limiter.dt, elapsed))
+            solution = solver.solve(problem, seed, thorough)
         iterations += solution.iterations
         if not solution.solved:
             halt = Halt(demand, bounds, solution)

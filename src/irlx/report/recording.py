@@ -13,7 +13,9 @@ from scipy.spatial.transform import Rotation
 from irlx.blocks import MoveBlock, ReconfigureBlock
 from irlx.diagnostics import Diagnostic
 from irlx.pacing.executed import Executed
+from irlx.pacing.nearest_rows import NearestRows
 from irlx.promises import PATH_POSITION
+from irlx.report.clearances import clearances
 from irlx.report.events import Slowed, limit_events, slowed_events
 from irlx.report.returns import returns
 from irlx.report.run import Run
@@ -38,6 +40,7 @@ class _Segment(NamedTuple):
     iterations: int = 0
     slowed: tuple[Slowed, ...] = ()
     planned: bool = False
+    nearest: NearestRows | None = None
 
 
 class Recording:
@@ -91,6 +94,7 @@ class Recording:
                 rows.iterations,
                 slowed_events(rows, limits, header.joint_names, header.dt),
                 rows.path is not None and rows.path.planned,
+                rows.nearest,
             )
         )
         self._rows += len(rows)
@@ -122,6 +126,7 @@ class Recording:
         active = np.concatenate([segment.active for segment in self._segments])
         events = limit_events(active, names, self._header.dt)
         slowed = tuple(event for segment in self._segments for event in segment.slowed)
+        near = clearances((len(segment.q), segment.nearest) for segment in self._segments)
         iterations = sum(segment.iterations for segment in self._segments)
         summary = Summary(
             program=self._header.program_name,
@@ -138,8 +143,9 @@ class Recording:
             closure=closure(q, tool, names, PATH_POSITION),
             iterations_per_tick=iterations / max(len(q) - 1, 1),
             returns=returns(records, q, tool, block, active, names),
+            clearance=near.smallest,
         )
-        return Run(stream, (*events, *slowed), summary, diagnostics)
+        return Run(stream, (*events, *slowed), summary, diagnostics, clearances=near)
 
     def _columns(self) -> tuple[Array, NDArray[np.int64], Array]:
         """Rows of q (N, n), block (N,) and tool (N, 7)."""

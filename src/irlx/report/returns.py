@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.blocks import CriterionBlock, CyclicBlock, FreezeBlock, MoveBlock
+from irlx.blocks import CriterionBlock, CyclicBlock, FreezeBlock, MoveBlock, ObstacleBlock
 from irlx.promises import CLOSURE, RETURN
 from irlx.report.events import SOURCES
 from irlx.streams.joint_stream import BlockRecord
@@ -52,6 +52,7 @@ class _Standing:
     cyclic: BlockRecord | None = None
     criteria: set[str] = field(default_factory=set)
     frozen: tuple[int, ...] = ()
+    obstacles: dict[str, str] = field(default_factory=dict)
 
     def take(self, record: BlockRecord) -> None:
         block = record.block
@@ -62,6 +63,10 @@ class _Standing:
         elif isinstance(block, CriterionBlock):
             change = self.criteria.discard if block.choice is None else self.criteria.add
             change(block.name)
+        elif isinstance(block, ObstacleBlock):
+            self.obstacles.pop(block.name.casefold(), None)
+            if block.active:
+                self.obstacles[block.name.casefold()] = block.name
 
 
 def returns(
@@ -110,6 +115,7 @@ def _held(
         words.append("WITH RECONFIGURATION on this move")
     words += [f"joint {number} frozen" for number in standing.frozen]
     words += [f"CRITERION {name}" for name in sorted({*standing.criteria, *_names(move)})]
+    words += [f"OBSTACLE {name}" for name in standing.obstacles.values()]
     return ", ".join(words) or "limits or options on the way"
 
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from irlx.diagnostics import Diagnostic, IrlxError
 from irlx.pacing.explanation import TickExplanation
+from irlx.report.clearances import Clearances, clearances
 from irlx.report.events import LimitActive, Slowed
 from irlx.report.signals import Signal, signals_of
 from irlx.report.summary import Summary
@@ -27,7 +28,7 @@ class Run:
     rates being backward differences of the emitted q, from rest before tick 0; `tool` (N, 7) x y z in
     m and unit quaternion x y z w of the tool frame in the world; `block` (N,) id of the move.
     `explanation` is that of the tick asked for with `explain_tick`, None where no motion has it;
-    `output` what the program wrote to STANDARD_OUT.
+    `output` what the program wrote to STANDARD_OUT; `clearances` what came nearest in each sample.
     """
 
     stream: JointStream
@@ -36,6 +37,7 @@ class Run:
     diagnostics: tuple[Diagnostic, ...]
     explanation: TickExplanation | None = None
     output: str = ""
+    clearances: Clearances = field(default_factory=lambda: clearances(()))
 
     @property
     def t(self) -> Array:

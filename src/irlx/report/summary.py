@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from irlx.report.clearances import SmallestClearance
 from irlx.report.events import LimitActive, Slowed
 from irlx.report.returns import Return
 from irlx.robot.limits import JointLimits
@@ -44,7 +45,8 @@ class Summary:
     from the start of the move). `limit_use` holds, for each kind of limit the robot has, the joint that
     came nearest to its bound (for positions: the bound on that side of the middle of its range).
     `closure` is None where the tool does not end where it began; `returns` are the moves that ended at the
-    tool pose of a CYCLICSTART.
+    tool pose of a CYCLICSTART; `clearance` is the place with the least room above a margin, None where
+    nothing that was kept clear came near.
     """
 
     program: str
@@ -61,6 +63,7 @@ class Summary:
     closure: Closure | None
     iterations_per_tick: float
     returns: tuple[Return, ...] = ()
+    clearance: SmallestClearance | None = None
 
     def to_plain(self) -> dict[str, object]:
         """The summary as JSON-able data."""

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from math import degrees
 
 from irlx.promises import CLOSURE
+from irlx.report.clearances import SmallestClearance
 from irlx.report.events import LimitActive, Slowed
 from irlx.report.returns import Return
 from irlx.report.summary import LimitUse, Summary
@@ -43,6 +44,8 @@ def summary_text(summary: Summary, joint_units: Sequence[str], joint_names: Sequ
         difference = _value(summary.closure.difference, units[summary.closure.joint])
         words = f"the postures differ by {difference} at most ({summary.closure.joint})"
         lines.append(_line("closure", f"the tool ends where it began; {words}"))
+    if summary.clearance is not None:
+        lines.append(_line("clearance", _clearance(summary.clearance)))
     lines += [_line("cyclic", words) for words in _returns(summary.returns, joint_units, joint_names)]
     return "\n".join(lines)
 
@@ -69,6 +72,11 @@ def _value(value: float, unit: str, per: str = "") -> str:
 def _use(use: LimitUse, units: dict[str, str]) -> str:
     value, bound = (_value(v, units[use.joint], _PER[use.kind]) for v in (use.value, use.bound))
     return f"{use.kind} {100.0 * use.share:.4g} %: {use.joint} {value} of {bound} at tick {use.tick}"
+
+
+def _clearance(found: SmallestClearance) -> str:
+    distance, margin = (f"{value * 1e3:.6g} mm" for value in (found.distance, found.margin))
+    return f"at least {distance} (margin {margin}): {found.link} and {found.other} at tick {found.tick}"
 
 
 def _slowed(events: Sequence[Slowed], units: dict[str, str]) -> list[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import degrees
 
-from irlx.pacing.explanation import JointTick, PathTick, QuadraticTick, TickExplanation
+from irlx.pacing.explanation import JointTick, NearRow, PathTick, QuadraticTick, TickExplanation
 
 _NAMED = 14
 
@@ -69,7 +69,13 @@ def _problem_lines(problem: QuadraticTick) -> list[str]:
         lines.append(line("hessian", numbers(row if isinstance(row, tuple) else (row,))))
     for name, row, left in zip(problem.rows, problem.jacobian, problem.left, strict=True):
         lines.append(line(name, numbers(row), f"{left:.4g}"))
+    for near in problem.near:
+        lines.append(line("clear", numbers(near.coefficients), f">= {near.least:.4g}  {_pair(near)}"))
     return lines
+
+
+def _pair(near: NearRow) -> str:
+    return f"{near.link} and {near.other}, {near.distance * 1e3:.6g} mm"
 
 
 def _joint_line(joint: JointTick, width: int) -> str:

@@ -10,7 +10,8 @@ from enum import Enum
 from functools import cached_property
 from math import inf
 
-Vector3 = tuple[float, float, float]
+from irlx.solids.placement import Vector3
+from irlx.solids.shape import Solid
 
 COORDINATES = ("x", "y", "z", "rx", "ry", "rz")
 """Coordinates of a tool pose, in the tool frame: displacements along its axes, turns about them."""
@@ -70,7 +71,8 @@ class RobotDescription:
 
     `joints` holds all joints of the tree; those between `root` and `tip` that move and are not
     `locked` are the robot's axes, in order from the root. `locked` maps a joint name to the value
-    it is held at; moving joints off the chain are held at their locked value or zero.
+    it is held at; moving joints off the chain are held at their locked value or zero. `solids` are the
+    shapes of each link that others must not touch, in the link's frame.
     """
 
     name: str
@@ -80,6 +82,7 @@ class RobotDescription:
     inertials: Mapping[str, Inertial] = field(default_factory=dict)
     locked: Mapping[str, float] = field(default_factory=dict)
     coordinates: tuple[str, ...] = COORDINATES
+    solids: Mapping[str, tuple[Solid, ...]] = field(default_factory=dict)
 
     @cached_property
     def chain(self) -> tuple[Joint, ...]:

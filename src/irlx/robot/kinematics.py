@@ -100,6 +100,7 @@ class Kinematics:
         for joint in description.joints:
             self._children.setdefault(joint.parent, []).append(joint)
         self._tip_frame = -1
+        self._bodies: dict[str, tuple[int, pin.SE3]] = {}
         self._add_link(description.root, 0, pin.SE3.Identity())
         self.data = self.model.createData()
         self.joints = len(description.axes)
@@ -127,6 +128,7 @@ class Kinematics:
 
     def _add_link(self, link: str, parent: int, in_parent: pin.SE3) -> None:
         """Add a link, welded to Pinocchio joint `parent` at `in_parent`, and all that hangs on it."""
+        self._bodies[link] = parent, in_parent
         inertial = self.description.inertials.get(link)
         if inertial is not None:
             # Many published URDFs have inertias that no body has; nothing here moves by them.
@@ -143,6 +145,10 @@ class Kinematics:
             else:
                 held_at = self.description.locked.get(joint.name, 0.0)
                 self._add_link(joint.child, parent, origin * _displacement(joint, held_at))
+
+    def body_of(self, link: str) -> tuple[int, pin.SE3]:
+        """Pinocchio joint that carries a link, 0 for the world, and the link's frame in that joint's."""
+        return self._bodies[link]
 
     def tool_pose(self, q: Array) -> tuple[Array, Array]:
         """Rotation (3, 3) and position (3,) m of the tool frame in the world."""

@@ -1,24 +1,18 @@
-"""URDF text -> `RobotDescription`; geometry of links is left to those who draw or avoid."""
+"""URDF text -> `RobotDescription`; what links look like is left to those who draw."""
 
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping
-from math import inf, isfinite, sqrt
+from math import inf, sqrt
 
-from irlx.robot.description import Inertial, Joint, JointKind, RobotDescription, Vector3
+from irlx.robot.description import Inertial, Joint, JointKind, RobotDescription
+from irlx.robot.link_solids import link_solids
+from irlx.robot.urdf_values import RobotModelError, number_of, origin_of, vector_of
+from irlx.solids.placement import Vector3
 
 MOST_LINKS = 500
 """Links of a robot; longer chains are a mistake, and would exhaust the stack."""
-
-
-class RobotModelError(ValueError):
-    """A robot model that cannot be used; `subject` names the element, `known` the valid names if any."""
-
-    def __init__(self, message: str, subject: str = "", known: tuple[str, ...] = ()) -> None:
-        self.subject = subject
-        self.known = known
-        super().__init__(message)
 
 
 def read_urdf(
@@ -44,7 +38,10 @@ def read_urdf(
         if name not in {joint.name for joint in joints}:
             known = tuple(joint.name for joint in joints)
             raise RobotModelError(f"no joint is called '{name}'", name, known)
-    robot = RobotDescription(root_element.get("name", "robot"), root, tip, joints, inertials, locked)
+    solids = link_solids(root_element.findall("link"))
+    robot = RobotDescription(
+        root_element.get("name", "robot"), root, tip, joints, inertials, locked, solids=solids
+    )
     _check_axes(robot, root_element)
     return robot
 
@@ -124,7 +121,7 @@ def _joint(element: ET.Element) -> Joint:
         message = f"joint '{name}' is of type '{kind_text}'; irlx moves {', '.join(known)}"
         raise RobotModelError(message, name, known) from None
     parent, child = (_link_of(element, tag, name) for tag in ("parent", "child"))
-    xyz, rpy = _origin(element, f"joint '{name}'")
+    xyz, rpy = origin_of(element, f"joint '{name}'")
     lower, upper, speed = _joint_limits(element, name, kind)
     return Joint(name, kind, parent, child, xyz, rpy, _axis(element, name, kind), lower, upper, speed)
 
@@ -137,39 +134,11 @@ def _link_of(element: ET.Element, tag: str, name: str) -> str:
     return link
 
 
-def _origin(element: ET.Element, where: str) -> tuple[Vector3, Vector3]:
-    origin = element.find("origin")
-    if origin is None:
-        return (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-    return _vector(origin, "xyz", where), _vector(origin, "rpy", where)
-
-
-def _vector(element: ET.Element, attribute: str, where: str) -> Vector3:
-    words = element.get(attribute, "0 0 0").split()
-    if len(words) != 3:
-        raise RobotModelError(f"{where}: {attribute} needs three numbers, found {len(words)}", where)
-    return (
-        _number(words[0], attribute, where),
-        _number(words[1], attribute, where),
-        _number(words[2], attribute, where),
-    )
-
-
-def _number(word: str, attribute: str, where: str) -> float:
-    try:
-        value = float(word)
-    except ValueError:
-        raise RobotModelError(f"{where}: {attribute} holds '{word}', which is no number", where) from None
-    if not isfinite(value):
-        raise RobotModelError(f"{where}: {attribute} holds '{word}', which is not finite", where)
-    return value
-
-
 def _axis(element: ET.Element, name: str, kind: JointKind) -> Vector3:
     found = element.find("axis")
     if found is None or kind is JointKind.FIXED:
         return (1.0, 0.0, 0.0)
-    x, y, z = _vector(found, "xyz", f"joint '{name}', axis")
+    x, y, z = vector_of(found, "xyz", f"joint '{name}', axis")
     length = sqrt(x * x + y * y + z * z)
     if length < 1e-9:
         raise RobotModelError(f"the axis of joint '{name}' has no direction", name)
@@ -182,7 +151,7 @@ def _joint_limits(element: ET.Element, name: str, kind: JointKind) -> tuple[floa
 
     def value(attribute: str, default: float) -> float:
         word = found.get(attribute) if found is not None else None
-        return default if word is None else _number(word, attribute, where)
+        return default if word is None else number_of(word, attribute, where)
 
     speed = value("velocity", inf)
     if speed < 0.0:
@@ -201,11 +170,11 @@ def _inertial(element: ET.Element) -> Inertial | None:
     if found is None:
         return None
     where = f"link '{element.get('name', '')}', inertial"
-    xyz, rpy = _origin(found, where)
+    xyz, rpy = origin_of(found, where)
     mass = found.find("mass")
     inertia = found.find("inertia")
     return Inertial(
-        0.0 if mass is None else _number(mass.get("value", "0"), "mass", where),
+        0.0 if mass is None else number_of(mass.get("value", "0"), "mass", where),
         xyz,
         rpy,
         (
@@ -220,4 +189,4 @@ def _inertial(element: ET.Element) -> Inertial | None:
 
 
 def _moment(element: ET.Element | None, attribute: str, where: str) -> float:
-    return 0.0 if element is None else _number(element.get(attribute, "0"), attribute, where)
+    return 0.0 if element is None else number_of(element.get(attribute, "0"), attribute, where)

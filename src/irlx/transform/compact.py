@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dposv, dpotrs
 
+from irlx.transform.clearance import SideRows
 from irlx.transform.metric import rows_over, solved
 from irlx.transform.orthogonal import FLAT, null_space, refined_step
 from irlx.transform.precision import QP_EXCESS
@@ -30,7 +31,8 @@ class StepProblem:
     """One Newton step written out, so that it can be inspected apart from being solved.
 
     `jacobian` J (m, n); `twist` e (m,) what is left to the demanded pose; `gradient` g (n,) and
-    `hessian` H of the criterion, its diagonal (n,) or all of it (n, n); `lower`, `upper` (n,) bounds of d.
+    `hessian` H of the criterion, its diagonal (n,) or all of it (n, n); `lower`, `upper` (n,) bounds of d;
+    `sides` further inequalities.
     """
 
     jacobian: Array
@@ -39,6 +41,11 @@ class StepProblem:
     hessian: Array
     lower: Array
     upper: Array
+    sides: SideRows | None = None
+
+    def keeps(self, d: Array) -> bool:
+        """Whether a step (n,) keeps bounds and inequalities."""
+        return within(d, self.lower, self.upper) and (self.sides is None or self.sides.hold(d))
 
 
 @dataclass(frozen=True)
@@ -99,7 +106,8 @@ def within(d: Array, lower: Array, upper: Array) -> bool:
 def bounded_step(problem: StepProblem, d_free: Array, solver: QpSolver) -> Step | None:
     """Minimiser with bounds, given the one without; None where no step keeps path and bounds.
 
-    In d = d_p + N z, N'HN = 1, the problem is min 1/2 |z|^2, lower - d_p <= N z <= upper - d_p.
+    In d = d_p + N z, N'HN = 1, the problem is min 1/2 |z|^2, lower - d_p <= N z <= upper - d_p, and the same
+    for the rows of `sides`.
     Raises ArithmeticError where the solver's answer breaks the bounds: clipping it into them would hide
     that the step no longer keeps the path.
     """
@@ -107,6 +115,11 @@ def bounded_step(problem: StepProblem, d_free: Array, solver: QpSolver) -> Step 
     rows = null_space_rows(problem)
     if rows.shape[1] == 0:
         return None
+    joints = d_free.size
+    if problem.sides is not None:
+        rows = np.vstack([rows, problem.sides.matrix @ rows])
+        lower = np.concatenate([lower, problem.sides.lower - problem.sides.matrix @ d_free])
+        upper = np.concatenate([upper, np.full(len(problem.sides.lower), np.inf)])
     one_unknown = rows.shape[1] == 1
     solution = (IntervalSolver() if one_unknown else solver).solve(rows, lower, upper)
     if solution.z is None:
@@ -115,10 +128,10 @@ def bounded_step(problem: StepProblem, d_free: Array, solver: QpSolver) -> Step 
     excess = float(np.max(np.maximum(moved - upper, lower - moved)))
     if not excess <= QP_EXCESS * max(1.0, float(np.max(np.abs(rows))), float(np.max(np.abs(moved)))):
         raise ArithmeticError(f"a QP step lies {excess:.3g} outside its bounds: its solver is at fault")
-    d = d_free + moved
+    d, active = d_free + moved[:joints], solution.active[:joints]
     # Joints held at a bound stand on it to the last bit, whatever the products above rounded to.
-    d = np.where(solution.active > 0, problem.upper, np.where(solution.active < 0, problem.lower, d))
-    return Step(d, solution.active)
+    d = np.where(active > 0, problem.upper, np.where(active < 0, problem.lower, d))
+    return Step(d, active)
 
 
 def null_space_rows(problem: StepProblem) -> Array:

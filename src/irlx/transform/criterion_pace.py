@@ -11,8 +11,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.transform.compact import StepProblem, path_step, within
-from irlx.transform.metric import times
+from irlx.transform.compact import Step, StepProblem, path_step
+from irlx.transform.metric import reduced, times
 
 Array = NDArray[np.float64]
 
@@ -20,6 +20,9 @@ STRAIGHT = 1e-3
 """A step no longer than this part of the one before needs no other share than 1."""
 
 _PATH_NEARLY_MET = 1e-3
+_LATE = 6
+_LATE_NEARLY_MET = 0.05
+_LATE_SHARE = 0.4
 _LEAST_SHARE = 0.05
 _LARGEST_SHARE = 2.0
 _NO_DIFFERENCE = 1e-3
@@ -31,20 +34,21 @@ class CriterionPace:
     def __init__(self) -> None:
         self._asked: Array | None = None
         self._taken: Array | None = None
+        self._steps = 0
 
-    def shape(self, problem: StepProblem, d: Array) -> Array:
-        """Step to take where the QP asks for `d`; the path part always stays whole.
+    def shape(self, problem: StepProblem, step: Step) -> Array:
+        """Step to take where the QP asks for `step`; the path part always stays whole.
 
         With n the null-space part that is asked for and s the one taken before, the share is
         s'Hs / s'H(n_before - n), which is 1 where the path is straight.
         """
+        d = taken = step.d
         share = self.share(problem.twist, problem.hessian, d)
-        taken = d
-        along_path = _along_path(problem) if share != 1.0 else None
+        along_path = _along_path(problem, step) if share != 1.0 else None
         if along_path is not None:
             taken = along_path + share * (d - along_path)
             # The shortest way onto the path may lead out of the bounds; the QP's step never does.
-            if not within(taken, problem.lower, problem.upper):
+            if not problem.keeps(taken):
                 taken = d
         self.took(problem.twist, d, taken)
         return taken
@@ -54,7 +58,10 @@ class CriterionPace:
 
         `twist` (6,) is what is left to the pose before the step, `hessian` H, (n,) or (n, n).
         """
-        if self._asked is None or self._taken is None or not _nearly_met(twist):
+        late = self._steps >= _LATE
+        if late and not self._nearly_met(twist):
+            return _LATE_SHARE
+        if self._asked is None or self._taken is None or not self._nearly_met(twist):
             return 1.0
         if self._taken.shape != d.shape:
             return 1.0
@@ -68,16 +75,37 @@ class CriterionPace:
 
     def took(self, twist: Array, asked: Array, taken: Array) -> None:
         """Remember a step as it was asked for and as it was taken, each (n,)."""
-        self._asked, self._taken = (asked, taken) if _nearly_met(twist) else (None, None)
+        self._steps += 1
+        self._asked, self._taken = (asked, taken) if self._nearly_met(twist) else (None, None)
+
+    def _nearly_met(self, twist: Array) -> bool:
+        # Steps that chatter leave the path again and again, the farther the longer they are.
+        most = _PATH_NEARLY_MET if self._steps < _LATE else _LATE_NEARLY_MET
+        return float(np.max(np.abs(twist))) <= most
 
 
-def _nearly_met(twist: Array) -> bool:
-    return float(np.max(np.abs(twist))) <= _PATH_NEARLY_MET
+def _along_path(problem: StepProblem, step: Step) -> Array | None:
+    """The shortest step that meets the pose, joints held by a bound going as `step` does.
 
-
-def _along_path(problem: StepProblem) -> Array | None:
-    """The shortest step that meets the pose; None where the Jacobian has lost its rank."""
+    None where the Jacobian has lost its rank.
+    """
+    held = step.active != 0
     try:
-        return path_step(problem)
+        if not np.any(held):
+            return path_step(problem)
+        others, d = ~held, step.d.copy()
+        if np.count_nonzero(others) < problem.twist.size:
+            return None
+        left = problem.twist - problem.jacobian[:, held] @ d[held]
+        rest = StepProblem(
+            problem.jacobian[:, others],
+            left,
+            problem.gradient[others],
+            reduced(problem.hessian, others),
+            problem.lower[others],
+            problem.upper[others],
+        )
+        d[others] = path_step(rest)
+        return np.asarray(d)
     except np.linalg.LinAlgError:
         return None

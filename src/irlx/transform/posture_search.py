@@ -22,6 +22,9 @@ Array = NDArray[np.float64]
 RESTARTS = 16
 """Starts tried beside the present posture; the same ones in every run."""
 
+NEAR = 0.5
+"""Way of a joint (rad or m) up to which a posture is near by."""
+
 _SEED = 11
 _ITERATIONS = 200
 _ALIKE = 1e-9
@@ -84,6 +87,30 @@ def nearest_posture(
         if solution.solved and away < least * (1.0 - _ALIKE):
             best, least = limits.into_positions(solution.q), away
     return PostureSearch(best, closest(approaches, kinematics.description.reach))
+
+
+def posture_near(
+    kinematics: Kinematics,
+    qp: QpSolver,
+    rotation: Array,
+    position: Array,
+    q: Array,
+    weights: Array,
+    limits: JointLimits,
+    free: NDArray[np.bool_],
+) -> Array | None:
+    """Posture at a tool pose as near to q (n,) as Newton's steps from there lead, if that is near by.
+
+    Where no joint goes farther than `NEAR` this is nearly always what `nearest_posture` finds with all its
+    starts, at a hundredth of the cost. None where it is not found, or farther away.
+    """
+    q = limits.into_positions(q)
+    target = kinematics.target(rotation, position)
+    problem = TickProblem(target, q, _position_room(q, limits), Posture(weights, q), free)
+    solution = TickSolver(kinematics, qp).solve(problem, thorough=False)
+    if not solution.solved or float(np.max(np.abs(solution.q - q))) > NEAR:
+        return None
+    return limits.into_positions(solution.q)
 
 
 def closest(approaches: list[Nearest], reach: float) -> Nearest:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.linalg.lapack import dposv
 
 from irlx.robot.kinematics import Kinematics
-from irlx.transform.compact import Step, StepProblem, bounded_step, free_step, within
+from irlx.transform.compact import Step, StepProblem, bounded_step, free_step
 from irlx.transform.criterion_pace import STRAIGHT, CriterionPace
 from irlx.transform.metric import solved
 from irlx.transform.nearest import Nearest, damped_step, nearest_in_bounds, scaled_singular_values
@@ -39,6 +39,7 @@ class TickStatus(Enum):
     BOUNDS_CONFLICT = "bounds of a joint contradict each other"
     NO_STEP = "no step keeps path and bounds"
     NOT_CONVERGED = "the pose is not met"
+    TOO_NEAR = "no step keeps clear"
 
 
 class TickSolution(NamedTuple):
@@ -104,6 +105,11 @@ class TickSolver:
             second = self._newton(problem, nearest.q - problem.q)
             if isinstance(second, TickSolution):
                 return second
+        if problem.clearance is not None:
+            unaware = self.solve(problem._replace(clearance=None))
+            if unaware.solved:
+                # The bounds leave a way: what comes too near closes it.
+                return unaware._replace(status=TickStatus.TOO_NEAR)
         return self._unsolved(problem, nearest, first)
 
     def _undisturbed(self, problem: TickProblem, whole: Array) -> TickSolution | Array:
@@ -116,7 +122,7 @@ class TickSolver:
         than the rounding of the pose itself is worth in joints. Returns the iterate to go on from with all
         precautions, where there is something to be cautious of.
         """
-        target, q, bounds, criterion, free = problem
+        target, q, bounds, criterion, free, clearance = problem
         joints = q.size
         inverse = criterion.inverse_hessian()
         some_frozen = np.count_nonzero(free) < joints
@@ -154,6 +160,8 @@ class TickSolver:
             if inside < 2 * joints:
                 return whole
             whole = further
+            if done and clearance is not None and not clearance.kept(whole):
+                return whole
             if done:
                 active = np.zeros(joints, dtype=np.int8)
                 # A frozen -0.0 plus 0.0 would be 0.0.
@@ -175,11 +183,15 @@ class TickSolver:
             pull = solved(step_problem.hessian, step_problem.gradient)
             done = settling.after(_length(step.d), _length(pull), self._met(step_problem.twist))
             done = done or (iteration == self._max_iterations and settling.calm > 0)
-            d = step.d if done else pace.shape(step_problem, step.d)
+            d = step.d if done else pace.shape(step_problem, step)
             d = d * min(1.0, MAX_NEWTON_STEP / max(float(np.max(np.abs(d), initial=0.0)), 1e-300))
             whole = whole.copy()
             whole[free] += d
             whole = np.where(free, np.minimum(np.maximum(whole, lower), upper), 0.0)
+            if done and problem.clearance is not None and not problem.clearance.kept(whole):
+                if problem.clearance.exhausted:
+                    return TickStatus.TOO_NEAR
+                continue
             if done:
                 active = np.zeros(problem.q.size, dtype=np.int8)
                 active[free] = step.active
@@ -204,7 +216,7 @@ class TickSolver:
         return step_problem, d_free
 
     def _step(self, problem: StepProblem, d_free: Array) -> Step | None:
-        if within(d_free, problem.lower, problem.upper):
+        if problem.keeps(d_free):
             return Step(d_free, np.zeros(d_free.size, dtype=np.int8))
         return bounded_step(problem, d_free, self._qp)
 

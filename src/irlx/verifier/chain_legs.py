@@ -80,6 +80,16 @@ def legs_of(chain: tuple[Demand, ...]) -> ChainLegs:
     )
 
 
+def end_reach(demand: Demand) -> float:
+    """How far a corner into a PTP may reach into a move of the tool, m: to C_CP, at most half of it."""
+    blend = demand.move.block.blend
+    asked = np.inf if blend is None or blend.distance is None else blend.distance
+    try:
+        return float(min(asked, _curves(demand)[-1].room[1]))
+    except (Unplaced, NoCurve):
+        return float(asked)
+
+
 def _curves(demand: Demand) -> list[Curve]:
     """The curves of one move."""
     block = demand.move.block

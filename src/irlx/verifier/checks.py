@@ -17,6 +17,7 @@ from irlx.streams.scan import scan_of
 from irlx.verifier.evidence import Evidence
 from irlx.verifier.findings.finding import FAILED, NO_CASE, NOT_CHECKED, OK, Check, Subject
 from irlx.verifier.findings.report import Report
+from irlx.verifier.judges.clearance import ClearanceChecks
 from irlx.verifier.judges.closure import ClosureChecks
 from irlx.verifier.judges.conditions import ConditionChecks
 from irlx.verifier.judges.joint_moves import JointMoveChecks
@@ -51,6 +52,7 @@ CHECKS = (
     "waiting time",
     "frozen joints",
     "constraints",
+    "clearance",
     "PTP straight",
     "PTP progress",
     "joint goal",
@@ -74,9 +76,10 @@ CHECKS = (
 _ANYWAY = ("written rates", "start", "stops")
 _LIMITS = CHECKS[10:13]
 _OF_CELL = ("constraints",)
+_CLEARANCE = ("clearance",)
 _BLOCKS = ("waits still", "waiting time", "frozen joints", "PTP straight", "PTP progress", "joint goal")
-_TOOL = CHECKS[21:23]
-_MOVES = CHECKS[23:]
+_TOOL = CHECKS[22:24]
+_MOVES = CHECKS[24:]
 
 _HEADER_DAMAGE = ("IRL701", "IRL705", "IRL706")
 
@@ -165,7 +168,8 @@ def _judged(
     start = None if robot is None or reference is None else reference.start
     relations = () if robot is None or reference is None else reference.relations
     of_blocks = check_blocks(outline, may_lack_blocks)
-    evidence = Evidence(outline, robot, start, relations, blocks_fit=of_blocks.status != FAILED)
+    scene = None if robot is None or reference is None else reference.scene
+    evidence = Evidence(outline, robot, start, relations, of_blocks.status != FAILED, scene)
     no_blocks = "the check 'blocks' failed" if of_blocks.status == FAILED else of_blocks.detail
     no_robot = of_robot.detail if of_robot.status == NOT_CHECKED else "the check 'robot' failed"
     no_robot = "" if robot is not None else no_robot
@@ -173,6 +177,7 @@ def _judged(
         (_ANYWAY, "", [RateChecks, StartCheck, StopChecks]),
         (_LIMITS, no_blocks if of_blocks.status == FAILED else "", [LimitChecks]),
         (_OF_CELL, no_robot, [ConditionChecks]),
+        (_CLEARANCE, no_blocks or no_robot, [ClearanceChecks]),
         (_BLOCKS, no_blocks, [WaitChecks, FrozenChecks, JointMoveChecks]),
         (_TOOL, no_robot, [ToolChecks]),
         (_MOVES, no_blocks or no_robot, [ToolMoveChecks, ReconfigurationChecks, ClosureChecks]),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -43,7 +43,9 @@ class Place:
 @dataclass(frozen=True, eq=False)
 class Demand:
     """One move: where it starts, its targets (via point, points of a PATH, the last one), where it ends,
-    and whether it passes that on its way to the next move, or comes from one that did."""
+    and whether it passes that on its way to the next move, or comes from one that did. `crosses`: whether the
+    one that it comes from, and the one that it leads into, is of the other kind: a PTP beside a move of the
+    tool."""
 
     move: MoveRows
     start: Place
@@ -51,6 +53,7 @@ class Demand:
     end: Place
     passes: bool
     follows: bool
+    crosses: tuple[bool, bool] = (False, False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,7 +136,17 @@ def demands_of(outline: Outline, moves: list[MoveRows], placer: Placer) -> list[
         end = placer.end(move, start, targets)
         passes = move.block.id in joinable and not _stands(outline, move, end, ends)
         found.append(Demand(move, start, targets, end, passes, follows))
-    return found
+    return _crossing(found)
+
+
+def _crossing(demands: list[Demand]) -> list[Demand]:
+    """The demands, told which of them run from or into moves of the other kind."""
+    ptp = [demand.move.block.kind is MoveKind.PTP for demand in demands]
+    changes = [False, *(one is not other for one, other in pairwise(ptp)), False]
+    return [
+        replace(demand, crosses=(demand.follows and changes[k], demand.passes and changes[k + 1]))
+        for k, demand in enumerate(demands)
+    ]
 
 
 class _Ends:
@@ -169,7 +182,8 @@ def _stands(outline: Outline, move: MoveRows, target: Place, ends: _Ends) -> boo
 
 
 def _joinable(outline: Outline) -> frozenset[int]:
-    """Ids of moves that may pass their target: PTP to PTP, and others to others."""
+    """Ids of moves that may pass their target. Between a PTP and a move of the tool that is not so where
+    joint increments count from a posture that is not reached, or where TIME counts from stop to stop."""
     moves = [
         record.block for record in outline.records if not isinstance(record.block, SignalBlock | InputBlock)
     ]
@@ -177,6 +191,11 @@ def _joinable(outline: Outline) -> frozenset[int]:
     for block, following in pairwise(moves):
         if not isinstance(block, MoveBlock) or not isinstance(following, MoveBlock) or block.blend is None:
             continue
-        if (block.kind is MoveKind.PTP) is (following.kind is MoveKind.PTP):
+        alike = (block.kind is MoveKind.PTP) is (following.kind is MoveKind.PTP)
+        if alike or not any(_needs_stop(move) for move in (block, following)):
             found.add(block.id)
     return frozenset(found)
+
+
+def _needs_stop(move: MoveBlock) -> bool:
+    return isinstance(move.target, JointIncrement) or move.law.duration is not None

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
 from irlx.blocks import MoveKind
 from irlx.robot.description import RobotDescription
 from irlx.robot.relation import JointRelation
+from irlx.scene.scene import Scene
 from irlx.streams.joint_stream import Floats
+from irlx.verifier.chain_legs import end_reach
 from irlx.verifier.demands import Demand, Placer, demands_of
 from irlx.verifier.findings.tally import Tally
 from irlx.verifier.limits import LimitsInForce, limits_in_force
@@ -25,7 +28,8 @@ class Evidence:
 
     `robot` is None where none is known or where it is not the stream's robot; nothing is asked for by blocks
     that do not fit the rows (`blocks_fit`); `start` (n,) is the posture in
-    which its cell has it begin, None where no cell is given; `relations` between joints are its cell's.
+    which its cell has it begin, None where no cell is given; `relations` between joints are its cell's,
+    as is the `scene` around the robot, None where no cell is given.
     """
 
     outline: Outline
@@ -33,6 +37,7 @@ class Evidence:
     start: Floats | None = None
     relations: tuple[JointRelation, ...] = ()
     blocks_fit: bool = True
+    scene: Scene | None = None
 
     @cached_property
     def moves(self) -> list[MoveRows]:
@@ -65,11 +70,12 @@ class Evidence:
         found, chain = [], list[Demand]()
         for demand in self.demands.values():
             chain.append(demand)
-            if not demand.passes:
+            if not demand.passes or demand.crosses[1]:
                 block = demand.move.block
                 broken_off = block.blend is not None and not demand.move.finished
+                crosses = chain[0].crosses[0] or demand.crosses[1]
                 if block.kind is not MoveKind.PTP and (
-                    len(chain) > 1 or block.path is not None or broken_off
+                    len(chain) > 1 or block.path is not None or broken_off or crosses
                 ):
                     found.append(tuple(chain))
                 chain = []
@@ -79,6 +85,24 @@ class Evidence:
     def chained(self) -> frozenset[int]:
         """Ids of the moves in `chains`."""
         return frozenset(demand.move.block.id for chain in self.chains for demand in chain)
+
+    @cached_property
+    def reaches(self) -> dict[int, float]:
+        """How far corners between a PTP and a move of the tool may reach, m: of a PTP by its id before it,
+        by its negative id behind it, as far as it has been found out."""
+        found = {}
+        for demand, following in pairwise(self.demands.values()):
+            if demand.crosses[1] and following.move.block.kind is MoveKind.PTP:
+                found[following.move.block.id] = end_reach(demand)
+        return found
+
+    @cached_property
+    def joint_rates(self) -> tuple[Tally, Tally]:
+        """Tallies of programmed speeds and accelerations, which several judges add to."""
+        return (
+            self.tally("programmed speed", "m/s|rad/s"),
+            self.tally("programmed acceleration", "m/s2|rad/s2"),
+        )
 
     def tally(self, name: str, unit: str) -> Tally:
         """An empty tally for a check of this stream."""

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from irlx.diagnostics.codes.cell import CELL
+from irlx.diagnostics.codes.clearance import CLEARANCE
 from irlx.diagnostics.codes.code import Code, Severity
 from irlx.diagnostics.codes.command import COMMAND
 from irlx.diagnostics.codes.data_lists import DATA_LISTS
@@ -35,6 +36,7 @@ CATALOGUE: Mapping[str, Code] = MappingProxyType(
             REDUNDANCY,
             MOTION,
             PACING,
+            CLEARANCE,
             RUN,
             FILES,
             CELL,

@@ -113,6 +113,12 @@ PACING = (
         "the spline turns back on itself at point {point} of the PATH, where it has no direction",
         "put a point beside the way, or use MOVE LIN PATH, which stops there",
     ),
+    info(
+        "IRL436",
+        "the move passes its target by {miss} mm: its way is left {left} mm before the corner, and the next "
+        "one's is reached {joined} mm behind it",
+        "ask for a smaller C_CP or C_PTP to come nearer, for a larger one to be quicker",
+    ),
     warning(
         "IRL445",
         "limits make this move {lost} s longer than programmed, {share} %: at {way} of {length} the tool has "

@@ -96,6 +96,16 @@ RUN = (
         "name that robot, or give the cell of the other one",
     ),
     error(
+        "IRL573",
+        "the cell has no obstacle or group '{name}'{near}",
+        "names that it has: {known}; [[obstacle]] of the cell file adds one",
+    ),
+    error(
+        "IRL574",
+        "nothing tells how far {robot} is from '{name}': none of its links that move has a shape",
+        "give the links of its URDF <collision> elements",
+    ),
+    error(
         "IRL580",
         "the sensor's correction for tick {tick} is no six numbers, but {found}",
         "return (dx, dy, dz, rx, ry, rz), m and rad, or None to leave the correction as it is",

@@ -10,6 +10,7 @@ from irlx.language.builtins import LAYOUT_BOUNDS
 from irlx.language.checking.context import NOTHING, Context, Typed
 from irlx.language.checking.names import Constant, Entry
 from irlx.language.checking.words import count
+from irlx.language.obstacles import OBSTACLE_NAME, obstacle_name, unknown_obstacle
 from irlx.language.references import Reference
 from irlx.language.types import (
     ORIENTATION,
@@ -139,12 +140,22 @@ class Calls(Context):
             self.file_use(argument, signature.name if not parameter.name else "")
             self.variable_argument(argument, where, parameter.types[0])
             return NOTHING
+        if parameter.names_obstacle:
+            name = obstacle_name(argument)
+            if name is None:
+                self.mismatch(argument, OBSTACLE_NAME, "an expression")
+            else:
+                self.obstacle(name)
+            return NOTHING
         if len(parameter.types) == 1:
-            if parameter.types[0] is UNKNOWN and isinstance(argument, tree.Designator):
-                # The name of an obstacle of the cell is no name of the program.
-                return self.typed(argument) if self.names.value(argument.base.key) else NOTHING
             return self.fitted(argument, parameter.types[0])
         return self.one_of(argument, parameter.types)
+
+    def obstacle(self, name: tree.Name) -> None:
+        """A name of an obstacle or group of the cell: IRL573 where the cell is known and has none like it."""
+        known = self.names.obstacles
+        if known is not None and name.key and name.key not in {one.casefold() for one in known}:
+            self.findings.append(unknown_obstacle(name.name, known, self.place(name)))
 
     def unknown_arguments(self, arguments: tuple[tree.Argument, ...]) -> None:
         """Look at arguments of which no type is known to be expected."""

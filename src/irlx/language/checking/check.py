@@ -48,18 +48,22 @@ def check_types(
     joints: tuple[str, ...] = (),
     modules: Mapping[str, Mapping[str, Symbol]] = _NO_MODULES,
     *,
+    obstacles: Collection[str] | None = None,
     complete: bool = True,
 ) -> TypedText:
     """Give everything in a text its type. `joints` are those of the robot where the cell is known.
 
-    `modules` are what those modules export that are known, by casefolded names.
+    `modules` are what those modules export that are known, by casefolded names; `obstacles` are names of the
+    cell, None where it is not known.
     Without `complete`, parts of the text have been left out.
     """
     if isinstance(root, tree.DataList):
-        check = type_check(source, Joints(len(joints) or None, names=joints), frames, complete=complete)
+        of_robot = Joints(len(joints) or None, names=joints)
+        check = type_check(source, of_robot, frames, obstacles, complete=complete)
         check.data_list(ImportedList(source, root))
         return check.outcome()
-    check = type_check(source, joints_of(root.declarations, joints), frames, complete=complete)
+    of_robot = joints_of(root.declarations, joints)
+    check = type_check(source, of_robot, frames, obstacles, complete=complete)
     check.modules, check.is_program = modules, isinstance(root, tree.Program)
     check.declare(root.declarations, lists)
     for part in root.declarations:
@@ -72,11 +76,16 @@ def check_types(
 
 
 def type_check(
-    source: SourceText, joints: Joints, frames: Collection[str] = (), *, complete: bool = True
+    source: SourceText,
+    joints: Joints,
+    frames: Collection[str] = (),
+    obstacles: Collection[str] | None = None,
+    *,
+    complete: bool = True,
 ) -> TypeCheck:
     """A type check that has looked at nothing yet."""
     types = known_types(joints.number)
-    check = TypeCheck(source, Names(types, system_names(types, frames, joints.number)))
+    check = TypeCheck(source, Names(types, system_names(types, frames, joints.number, obstacles)))
     check.joints, check.complete = joints, complete
     return check
 

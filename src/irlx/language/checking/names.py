@@ -68,6 +68,8 @@ class Names:
         self.types = types
         self.values: dict[str, Entry] = {}
         self.type_symbols: dict[str, Symbol] = {}
+        self.obstacles: Collection[str] | None = outer.obstacles if outer is not None else None
+        """Names of obstacles and groups of the cell, None where no cell is known."""
         self.functions: dict[str, Signature] = built_in_functions(types) if outer is None else outer.functions
 
     def inner(self) -> Names:
@@ -90,9 +92,15 @@ class Names:
         return found or (self.outer.type_symbol(key) if self.outer else None)
 
 
-def system_names(types: dict[str, Type], frames: Collection[str], joints: int | None = None) -> Names:
-    """The outermost names: system variables of a robot of a number of joints, and the frames of a cell."""
+def system_names(
+    types: dict[str, Type],
+    frames: Collection[str],
+    joints: int | None = None,
+    obstacles: Collection[str] | None = None,
+) -> Names:
+    """The outermost names: system variables of a robot of a number of joints, what its cell has names for."""
     names = Names(types)
+    names.obstacles = obstacles
     of_robot = {
         "r_robtarget_act": types["robtarget"],
         "r_joint_act": types["joint"],

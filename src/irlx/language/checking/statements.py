@@ -144,6 +144,9 @@ class Statements(Motion, Channels):
         if found is not None:
             self.add("IRL250", node.name, name=node.name.name, found=found, expected="a procedure")
 
+    def _obstacle(self, node: tree.ObstacleStart | tree.ObstacleEnd) -> None:
+        self.obstacle(node.name)
+
     def _wait_time(self, node: tree.WaitTime) -> None:
         self._seconds(node.duration, "WAIT")
 
@@ -176,4 +179,6 @@ _STATEMENTS: dict[type[tree.Node], Callable[[Statements, Any], None]] = {
     tree.FreezeStart: Statements.freeze,
     tree.Reconfiguration: Statements.reconfiguration,
     tree.CriterionStart: Statements.criterion,
+    tree.ObstacleStart: Statements._obstacle,
+    tree.ObstacleEnd: Statements._obstacle,
 }

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from irlx.diagnostics import Diagnostic, Place, Related, SourceText, Span, report
 from irlx.language import tree
 from irlx.language.builtins import PROCEDURES, is_port_name
+from irlx.language.obstacles import own_nodes
 from irlx.language.symbols import declared_symbols, parameter_symbols
 
 _STOPPING: dict[type[tree.Node], str] = {
@@ -158,7 +159,7 @@ class _Line:
 
     def _asked(self, root: tree.Node) -> str | None:
         """What a statement or expression reads of the robot or its inputs; None where it may call first."""
-        nodes = list(tree.walk(root))
+        nodes = list(own_nodes(root))
         if any(self._calls(node) for node in nodes):
             return None
         for node in nodes:
@@ -172,7 +173,7 @@ class _Line:
     def _leaves(self, statement: tree.Statement) -> bool:
         """Whether nobody says what comes behind a statement without a blocker, or a move does."""
         if isinstance(statement, tree.Assignment):
-            return any(self._calls(node) for node in tree.walk(statement))
+            return any(self._calls(node) for node in own_nodes(statement))
         return not isinstance(statement, tree.Label)
 
     def _calls(self, node: tree.Node) -> bool:

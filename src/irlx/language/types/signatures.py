@@ -11,11 +11,15 @@ from irlx.language.types.predefined import ORIENTATION, POSE, POSITION
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """One parameter: its name, '' for a built-in's, the types that it may have, and whether it is VAR."""
+    """One parameter: its name, '' for a built-in's, the types that it may have, and whether it is VAR.
+
+    One that `names_obstacle` takes no value, but a name of the cell.
+    """
 
     name: str
     types: tuple[Type, ...]
     by_reference: bool = False
+    names_obstacle: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +44,9 @@ def _signature(
 ) -> Signature:
     taken = tuple(Parameter("", p if isinstance(p, tuple) else (p,)) for p in parameters)
     return Signature(name, taken, result, len(taken) - optional, like_first)
+
+
+_OBSTACLE = Parameter("", (UNKNOWN,), names_obstacle=True)
 
 
 def built_in_functions(types: Mapping[str, Type]) -> dict[str, Signature]:
@@ -80,8 +87,8 @@ def built_in_functions(types: Mapping[str, Type]) -> dict[str, Signature]:
         _signature("FK", POSE, postures),
         _signature("IK", main, places, postures),
         _signature("MANIPULABILITY", REAL, postures),
-        _signature("CLEARANCE", REAL, postures, UNKNOWN, optional=1),
-        _signature("POSTURE", main, places, UNKNOWN, optional=1),
+        Signature("CLEARANCE", (Parameter("", postures), _OBSTACLE), REAL, 2),
+        Signature("POSTURE", (Parameter("", places), _OBSTACLE), main, 1),
         Signature("EOF", (Parameter("", (FILE,), by_reference=True),), BOOL, 0),
     ]
     return {signature.name.casefold(): signature for signature in found}

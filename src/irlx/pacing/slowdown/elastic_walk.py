@@ -16,12 +16,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import pinocchio as pin
 from numpy.typing import NDArray
 
 from irlx.pacing.slowdown.grid import PathGrid
 from irlx.pacing.slowdown.model import Model
 from irlx.pacing.slowdown.reserve import rounded_inside
+from irlx.transform.clearance import SideRows, TickClearance
 from irlx.transform.compact import null_space_rows
 from irlx.transform.criteria.criterion import Criterion
 from irlx.transform.qp.dual import DualSolver
@@ -72,23 +72,34 @@ def elastic_walk(
     q = np.empty((grid.intervals + 1, start.size))
     stretch = np.zeros(grid.intervals)
     q[0] = start
+    elapsed = 0.0
     for i in range(grid.intervals):
         target = targets[i + 1]
         room = _Room.at(model, q[i], (bounds[0][i + 1], bounds[1][i + 1]), reserve, float(grid.times[i]))
         criterion = criterion_of(float(grid.s[i + 1]), float(grid.s[i + 1] - grid.s[i])).begun(q[i])
-        easy = solver.solve(TickProblem(target, q[i], room.none(), criterion, model.free), thorough=False)
+        keeping = _kept_clear(model, q[i], room.duration, elapsed, reserve)
+        problem = TickProblem(target, q[i], room.none(), criterion, model.free, keeping)
+        easy = solver.solve(problem, thorough=False)
         if easy.solved and room.holds(easy.q - q[i]):
             q[i + 1] = rounded_inside(easy.q, model.limits)
+            elapsed += room.duration
             continue
         begin = easy.q - q[i] if easy.solved else np.zeros(start.size)
-        found = _Stretch(model, solver, target, q[i], room, criterion).solve(begin)
+        found = _Stretch(model, solver, problem, room).solve(begin)
+        if found is None and keeping is not None:
+            # How fast the path itself leads near something is for the clock: the margins are left.
+            problem = problem._replace(
+                clearance=_kept_clear(model, q[i], room.duration, elapsed, reserve, False)
+            )
+            found = _Stretch(model, solver, problem, room).solve(np.zeros(start.size))
         if found is None:
-            last = solver.solve(TickProblem(target, q[i], room.positions(), criterion, model.free))
+            last = solver.solve(problem._replace(bounds=room.positions()))
             if not last.solved:
                 return Passage(q[: i + 1], stretch[:i], (i, last))
             found = last.q - q[i], room.stretch_of(last.q - q[i])
         q[i + 1] = rounded_inside(q[i] + found[0], model.limits)
         stretch[i] = found[1]
+        elapsed += room.duration * (1.0 + found[1])
     return Passage(q, stretch)
 
 
@@ -146,13 +157,11 @@ class _Stretch:
         self,
         model: Model,
         solver: TickSolver,
-        target: pin.SE3,
-        q: Array,
+        problem: TickProblem,
         room: _Room,
-        criterion: Criterion,
     ) -> None:
         self._model, self._solver, self._room = model, solver, room
-        self._problem = TickProblem(target, q, room.none(), criterion, model.free)
+        self._problem = problem
         speed = np.minimum(model.limits.speed_upper, -model.limits.speed_lower)
         speed = np.where(np.isfinite(speed), speed, 1.0)
         # A price in the units of the motion's own cost: one unit of stretch costs the motion at all limits.
@@ -174,14 +183,22 @@ class _Stretch:
             if largest <= _SETTLED:
                 # Where joints are held a step may be small without leading anywhere.
                 left, _ = self._model.kinematics.difference(self._problem.q + whole, self._problem.target)
-                return (whole, stretch) if float(np.max(np.abs(left))) <= _SETTLED else None
+                if float(np.max(np.abs(left))) > _SETTLED:
+                    return None
+                keeping = self._problem.clearance
+                if keeping is None or keeping.kept(whole):
+                    return whole, stretch
         return None
 
     def _round(self, whole: Array) -> tuple[Array, float] | None:
         free, room = self._model.free, self._room
         problem, d_free = self._solver.newton_problem(self._problem, whole)
         rows = null_space_rows(problem) * room.duration
-        found = _elastic_step(rows, whole[free] + d_free, _reduced(room, free), self._price)
+        sides = None
+        if problem.sides is not None:
+            matrix = problem.sides.matrix
+            sides = SideRows(matrix @ rows, problem.sides.lower - matrix @ d_free)
+        found = _elastic_step(rows, whole[free] + d_free, _reduced(room, free), self._price, sides)
         if found is None:
             return None
         step = np.zeros(whole.size)
@@ -193,13 +210,20 @@ def _reduced(room: _Room, free: NDArray[np.bool_]) -> _Room:
     return _Room(room.low[free], room.high[free], room.down[free], room.up[free], room.duration)
 
 
-def _elastic_step(rows: Array, target: Array, room: _Room, price: float) -> tuple[Array, float] | None:
-    """Minimise 1/2 |z|^2 + price (eps + eps^2 / 2000), D = target + rows z; returns D and eps."""
+def _elastic_step(
+    rows: Array, target: Array, room: _Room, price: float, sides: SideRows | None = None
+) -> tuple[Array, float] | None:
+    """Minimise 1/2 |z|^2 + price (eps + eps^2 / 2000), D = target + rows z; returns D and eps.
+
+    `sides` are inequalities of z that are kept whatever the price.
+    """
     solve = _one_unknown if rows.shape[1] == 1 else _many_unknowns
-    return solve(rows, target, room, price)
+    return solve(rows, target, room, price, sides)
 
 
-def _many_unknowns(rows: Array, target: Array, room: _Room, price: float) -> tuple[Array, float] | None:
+def _many_unknowns(
+    rows: Array, target: Array, room: _Room, price: float, sides: SideRows | None
+) -> tuple[Array, float] | None:
     """With e = scale (eps + offset) the price is half a square, and all is a least-norm problem in (z, e)."""
     count, unknowns = rows.shape
     scale, offset = np.sqrt(_CURVATURE * price), 1.0 / _CURVATURE
@@ -215,13 +239,40 @@ def _many_unknowns(rows: Array, target: Array, room: _Room, price: float) -> tup
     matrix[second, :unknowns], matrix[second, unknowns] = rows[below], room.down[below] / scale
     lower[second] = -room.down[below] * (1.0 - offset) - target[below]
     matrix[-1, unknowns], lower[-1] = 1.0, scale * offset
+    if sides is not None:
+        matrix = np.vstack([matrix, np.pad(sides.matrix, ((0, 0), (0, 1)))])
+        lower = np.concatenate([lower, sides.lower])
+        upper = np.concatenate([upper, np.full(len(sides.lower), np.inf)])
     z = DualSolver().solve(matrix, lower, upper).z
     if z is None:
         return None
     return target + rows @ z[:unknowns], max(float(z[unknowns]) / scale - offset, 0.0)
 
 
-def _one_unknown(rows: Array, target: Array, room: _Room, price: float) -> tuple[Array, float] | None:
+def _kept_clear(
+    model: Model, q: Array, duration: float, elapsed: float, reserve: float, paced: bool = True
+) -> TickClearance | None:
+    """What a step from posture q (n,) in `duration` s must keep clear, with the reserve of a plan (m)."""
+    clearance = model.clearance
+    return None if clearance is None else clearance.tick(q, duration, elapsed, reserve, paced)
+
+
+def _within_sides(sides: SideRows, least: float, most: float) -> tuple[float, float]:
+    """Smallest and largest value of the one unknown that keeps the inequalities; crossed where none does."""
+    for slope, bound in zip(sides.matrix[:, 0].tolist(), sides.lower.tolist(), strict=True):
+        if abs(slope) <= _NO_SLOPE:
+            if bound > _ROUNDING:
+                return np.inf, -np.inf
+        elif slope > 0.0:
+            least = max(least, bound / slope)
+        else:
+            most = min(most, bound / slope)
+    return least, most
+
+
+def _one_unknown(
+    rows: Array, target: Array, room: _Room, price: float, sides: SideRows | None
+) -> tuple[Array, float] | None:
     """The cost over the one unknown is convex and made of parabolas: its least value is where one of them
     has its own, where two of them meet, or at an end of what the positions allow."""
     slope = rows[:, 0]
@@ -232,6 +283,8 @@ def _one_unknown(rows: Array, target: Array, room: _Room, price: float) -> tuple
     ends = np.stack([(room.low - target) / safe, (room.high - target) / safe])
     least = float(np.max(np.where(still, -np.inf, np.min(ends, axis=0))))
     most = float(np.min(np.where(still, np.inf, np.max(ends, axis=0))))
+    if sides is not None:
+        least, most = _within_sides(sides, least, most)
     if least > most:
         return None
     # Stretch as straight lines in z: nothing, and what each bound asks for.

@@ -61,6 +61,10 @@ class PathGrid:
         """Number N of intervals."""
         return int(self.times.size)
 
+    def times_at(self, s: Array) -> Array:
+        """Programmed times (M,) at path parameters (M,), s; between knots in proportion."""
+        return np.asarray(np.interp(s, self.s, np.concatenate([[0.0], np.cumsum(self.times)])))
+
     def inner_knot(self, s: float) -> int:
         """The knot next to a path parameter, the first and the last one left out."""
         return int(np.clip(np.argmin(np.abs(self.s - s)), 1, self.intervals - 1))

@@ -45,11 +45,12 @@ def timed_curves(
     bounds: tuple[Array, Array],
     acc: float,
     pinned: Sequence[int] = (),
+    reserve: float = 0.0,
 ) -> list[TimedCurve]:
     """The rungs for the walked postures (N + 1, n), fastest first; none that leaves the position limits.
 
     `bounds` are lower and upper positions (N + 1, n), `acc` the largest |d2s/dt2|; the postures of the
-    knots `pinned` stay.
+    knots `pinned` stay; `reserve` (m) is kept beside margins.
     """
     programmed = float(np.sum(grid.times))
     known = np.isfinite(model.limits.acceleration_upper) | np.isfinite(model.limits.acceleration_lower)
@@ -57,7 +58,7 @@ def timed_curves(
     found: list[tuple[float, TimedCurve]] = []
     for rung in RUNGS if tamed else (*RUNGS[1:], RUNGS[0]):
         handicap = 1.0 + ROUGH_GAIN if rung is None and not tamed else 1.0
-        timed = _timed(model, grid, walked, bounds, acc, rung, pinned)
+        timed = _timed(model, grid, walked, bounds, acc, rung, pinned, reserve)
         if timed is not None:
             found.append((timed.clock.duration * handicap, timed))
             if timed.clock.duration <= programmed * (1.0 + GOOD_ENOUGH):
@@ -73,10 +74,12 @@ def _timed(
     acc: float,
     rung: Smoothing | None,
     pinned: Sequence[int],
+    reserve: float,
 ) -> TimedCurve | None:
-    """The curve of one rung with its clock; None where it leaves the position limits or gets lost."""
+    """The curve of one rung with its clock; None where it leaves the position limits, comes too near to
+    something or gets lost."""
     try:
-        q = walked if rung is None else relax(model, grid, walked, bounds, rung, pinned)
+        q = walked if rung is None else relax(model, grid, walked, bounds, rung, pinned, reserve)
     except np.linalg.LinAlgError:
         return None
     if not np.all(np.isfinite(q)):
@@ -89,5 +92,16 @@ def _timed(
         > _ROUNDING
     ):
         return None
+    clearance = model.clearance
+    if clearance is not None:
+        places = places_between(grid)
+        if clearance.first_short(curve.at(places), q[0], grid.times_at(places)) is not None:
+            return None
     clock = plan_clock(clock_bounds(curve, limits, grid.rates, acc))
     return TimedCurve(curve, clock) if clock is not None else None
+
+
+def places_between(grid: PathGrid) -> Array:
+    """Path parameters at the inner knots and half way between knots."""
+    halves = grid.s[:-1] + 0.5 * np.diff(grid.s)
+    return np.sort(np.concatenate([grid.s[1:-1], halves]))

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from irlx.motion.pose_path import Poses
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
+from irlx.transform.clearance import Clearance
 from irlx.transform.row_rank import independent_rows, usual_rank
 
 Array = NDArray[np.float64]
@@ -23,12 +24,13 @@ _NO_WAY = 1e-10
 
 @dataclass(frozen=True)
 class Model:
-    """Kinematics, limits in force, joint weights (n,), and which joints are not frozen (n,)."""
+    """Kinematics, limits in force, weights (n,), joints that are not frozen (n,), what is kept clear."""
 
     kinematics: Kinematics
     limits: JointLimits
     weights: Array
     free: NDArray[np.bool_]
+    clearance: Clearance | None = None
 
     @property
     def freedom(self) -> int:

@@ -16,13 +16,15 @@ from irlx.pacing.demand import Demand
 from irlx.pacing.resolution import EVERY_TICK, Resolution
 from irlx.pacing.row_check import BrokenBound, excess_of
 from irlx.pacing.slowdown.clock import PlannedClock
+from irlx.pacing.slowdown.curve import JointCurve
 from irlx.pacing.slowdown.drawn_end import with_drawn_end
 from irlx.pacing.slowdown.elastic_walk import elastic_walk
 from irlx.pacing.slowdown.grid import PathGrid, path_grid
-from irlx.pacing.slowdown.ladder import TimedCurve, timed_curves
+from irlx.pacing.slowdown.ladder import TimedCurve, places_between, timed_curves
 from irlx.pacing.slowdown.model import Model
 from irlx.pacing.slowdown.resample import resample
 from irlx.pacing.slowdown.reserve import RESERVE, reserved
+from irlx.transform.clearance import TooNear
 from irlx.transform.criteria.criterion import Criterion
 from irlx.transform.nearest import scaled_singular_values
 from irlx.transform.tick import TickSolution
@@ -61,7 +63,8 @@ class Refusal:
 
     `solution` holds the failed step of the walk. Else the clock of `timed` stands at `knot`, for the bound
     it names. Else only the differences of the rows say no: `broken`, its row counted from the start of
-    the motion.
+    the motion. Or something comes too `near`, in a
+    `row` from the start of the motion.
     """
 
     s: float
@@ -69,6 +72,8 @@ class Refusal:
     timed: TimedCurve | None = None
     knot: int = -1
     broken: BrokenBound | None = None
+    near: TooNear | None = None
+    row: int = 0
 
 
 @dataclass(frozen=True)
@@ -126,7 +131,7 @@ def _planned(model: Model, task: MotionTask) -> PlannedMotion | Refusal:
     for _ in range(_RESERVES):
         bounds = reserved(model.limits, grid.intervals + 1, reserve)
         found = _with_reserve(model, task, grid, bounds, reserve)
-        if not isinstance(found, Refusal) or found.broken is None:
+        if not isinstance(found, Refusal) or (found.broken is None and found.near is None):
             break
         reserve *= _RESERVE_GROWTH
     return found
@@ -144,7 +149,7 @@ def _with_reserve(
     through = tuple(grid.inner_knot(place) for place in task.through)
     if task.draws:
         q = with_drawn_end(model, grid, q, bounds, task.criterion_of, through)
-    curves = timed_curves(model, grid, q, bounds, task.acc, through)
+    curves = timed_curves(model, grid, q, bounds, task.acc, through, reserve)
     if not curves:
         return _outside(model, grid, q)
     standing = _standing(model, curves[0], grid)
@@ -171,8 +176,13 @@ def _most_singular(model: Model, timed: TimedCurve, grid: PathGrid) -> int:
 
 
 def _outside(model: Model, grid: PathGrid, q: Array) -> Refusal:
-    """The knot at which the walked postures (N + 1, n) leave a position limit most."""
+    """The knot at which the walked postures (N + 1, n) leave a position limit most, or come too near."""
     lower, upper = model.limits.pair("position")
+    if model.clearance is not None and np.all((q <= upper) & (q >= lower)):
+        places = places_between(grid)
+        short = model.clearance.first_short(JointCurve(grid.s, q).at(places), q[0], grid.times_at(places))
+        if short is not None:
+            return Refusal(float(places[short[0]]), near=short[1])
     knot, joint = np.unravel_index(int(np.argmax(np.maximum(q - upper, lower - q))), q.shape)
     value = float(q[knot, joint])
     bound = float((upper if value > upper[joint] else lower)[joint])
@@ -214,6 +224,11 @@ def rows_on_clock(model: Model, timed: TimedCurve, ticking: Ticking, least: floa
         excess = excess_of(start, np.vstack([q, q[-1:]]), model.limits, whole / rows)
         broken = excess.first
         if broken is None:
+            if model.clearance is not None:
+                elapsed = whole / rows * np.arange(1.0, rows + 1.0)
+                short = model.clearance.first_short(q, start, elapsed)
+                if short is not None:
+                    return Refusal(demands[short[0]].s, near=short[1], row=short[0])
             return PlannedMotion(q, demands, timed, factor)
         found = Refusal(demands[min(broken.row, rows - 1)].s, broken=broken)
         slower = max(excess.speed, np.sqrt(excess.acceleration)) * (1.0 + _STRETCH_MARGIN)

@@ -7,6 +7,8 @@ does not depend on the slowing), minimise
     sum_i W |h^2 q''_i|^2 + (h / l)^4 W |q_i - q_walk,i|^2
         + mu W (|dq_i| - 0.995 v dT_i)_+^2 + 1e5 W (position excess)_+^2,     l = tau x programmed speed,
 
+and the squares of what pairs lack of their margins, at the price of the joint step that would make up for it,
+
 by Newton's method on the active set of the hinges (a band matrix), then back onto the path. A step that does
 not lower the sum is halved: full ones may go to and fro between several sets for ever. A knot at which a
 posture is asked for is pinned: there the price of the second term is 1e5.
@@ -23,6 +25,7 @@ from scipy.linalg import solveh_banded
 
 from irlx.pacing.slowdown.grid import STEP, PathGrid
 from irlx.pacing.slowdown.model import Model, null_spaces
+from irlx.pacing.slowdown.near_knots import NearKnots, near_knots
 
 Array = NDArray[np.float64]
 Sides = NDArray[np.int8]
@@ -52,18 +55,22 @@ def relax(
     bounds: tuple[Array, Array],
     smoothing: Smoothing,
     pinned: Sequence[int] = (),
+    reserve: float = 0.0,
 ) -> Array:
     """Smoother postures (N + 1, n) on the same poses, from those of the walk; first and last stay, and those
     of the knots `pinned`.
 
-    `bounds` are lower and upper positions (N + 1, n). Raises numpy.linalg.LinAlgError at singular knots.
+    `bounds` are lower and upper positions (N + 1, n); `reserve` (m) is kept beside margins. Raises
+    numpy.linalg.LinAlgError at singular knots.
     """
     if model.freedom < 1 or grid.intervals < 3:
         return walked
     targets = model.targets(grid.poses)
     q, jacobians = walked, model.differences(walked, targets)[1]
     for _ in range(_OUTER_ROUNDS):
-        relaxation = _Relaxation(model, grid, q, null_spaces(jacobians), walked, bounds, smoothing, pinned)
+        near = near_knots(model, grid, q, reserve) if model.clearance is not None else None
+        basis = null_spaces(jacobians)
+        relaxation = _Relaxation(model, grid, q, basis, walked, bounds, smoothing, pinned, near)
         step = relaxation.step()
         moved = q.copy()
         moved[1:-1, model.free] += step
@@ -91,6 +98,7 @@ class _Relaxation:
         bounds: tuple[Array, Array],
         smoothing: Smoothing,
         pinned: Sequence[int],
+        near: NearKnots | None,
     ) -> None:
         free = model.free
         self._weights = model.weights[free]
@@ -105,6 +113,10 @@ class _Relaxation:
         self._second = _second_differences(np.diff(grid.s))
         self._attraction = np.full(len(q), (grid.step / smoothing.tau) ** 4)
         self._attraction[list(pinned)] = _PIN_PRICE
+        self._near = near
+        if near is not None:
+            length = np.maximum(np.einsum("mf,mf->m", near.rates, near.rates), 1e-12)
+            self._near_price = _POSITION_PRICE * float(np.mean(self._weights)) / length
 
     def step(self) -> Array:
         """Change (N - 1, f) of the free joints at the interior knots, on the null spaces."""
@@ -140,7 +152,10 @@ class _Relaxation:
         out = np.maximum(q - self._upper, 0.0) + np.maximum(self._lower - q, 0.0)
         squares = (bent**2).sum(axis=0) + (self._attraction[:, None] * (q - self._walked) ** 2).sum(axis=0)
         squares += self._mu * (over**2).sum(axis=0) + _POSITION_PRICE * (out**2).sum(axis=0)
-        return float(w @ squares)
+        lacking = 0.0
+        if self._near is not None:
+            lacking = float(self._near_price @ np.maximum(-self._near.room_after(change), 0.0) ** 2)
+        return float(w @ squares) + lacking
 
     def _smooth_part(self) -> tuple[tuple[Array, Array, Array], Array]:
         """Blocks (diagonal, first and second above) and gradient of the curvature and the attraction."""
@@ -166,20 +181,26 @@ class _Relaxation:
         pull[2:] += after[:, None] * bent
         return blocks, np.einsum("ifr,f,if->ir", z, w, pull)[1:-1]
 
-    def _hinges(self, change: Array) -> tuple[Sides, Sides]:
-        """Sides on which steps pass their speed (N, f) and positions their bounds (N + 1, f): 1, 0, -1."""
+    def _hinges(self, change: Array) -> tuple[Sides, Sides, Sides]:
+        """Sides on which steps pass their speed (N, f) and positions their bounds (N + 1, f): 1, 0, -1.
+
+        And the near pairs (M,) that lack distance.
+        """
         q = self._q + change
         steps = np.diff(q, axis=0)
         fast = (steps > self._fastest).astype(np.int8) - (steps < self._slowest).astype(np.int8)
         out = (q > self._upper).astype(np.int8) - (q < self._lower).astype(np.int8)
-        return fast, out
+        lacking = np.zeros(0, dtype=np.int8)
+        if self._near is not None:
+            lacking = (self._near.room_after(change) < 0.0).astype(np.int8)
+        return fast, out, lacking
 
     def _with_hinges(
-        self, blocks: tuple[Array, Array, Array], gradient: Array, active: tuple[Sides, Sides]
+        self, blocks: tuple[Array, Array, Array], gradient: Array, active: tuple[Sides, Sides, Sides]
     ) -> tuple[tuple[Array, Array, Array], Array]:
         """The problem with the hinges in `active` as squares; `change` 0 is the point of linearisation."""
         z, w = self._basis, self._weights
-        fast, out = active
+        fast, out, lacking = active
         main, beside, second = blocks
         slope = np.zeros_like(self._q)
         price_out = _POSITION_PRICE * w * (out != 0)
@@ -197,6 +218,12 @@ class _Relaxation:
             diagonal[1:] += price
             beside = beside - np.einsum("ifr,if,ifs->irs", z[1:-2], price[1:-1], z[2:-1])
         main = main + np.einsum("ifr,if,ifs->irs", z[1:-1], diagonal[1:-1], z[1:-1])
+        near = self._near
+        if near is not None and np.any(lacking):
+            price = self._near_price * lacking
+            rows = np.einsum("mf,mfr->mr", near.rates, z[near.knots])
+            np.add.at(main, near.knots - 1, np.einsum("m,mr,ms->mrs", price, rows, rows))
+            np.add.at(slope, near.knots, (price * near.room)[:, None] * near.rates)
         return (main, beside, second), gradient + np.einsum("ifr,if->ir", z, slope)[1:-1]
 
 

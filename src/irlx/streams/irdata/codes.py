@@ -21,6 +21,7 @@ BLOCK_CODES = {
     "FreezeBlock": 420,
     "CyclicBlock": 430,
     "CriterionBlock": 440,
+    "ObstacleBlock": 445,
     "ToolBlock": 450,
     "WeightsBlock": 460,
     "SignalBlock": 500,

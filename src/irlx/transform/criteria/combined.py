@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import prod
 
 import numpy as np
 
@@ -20,8 +21,9 @@ class Weighted:
 
 
 class Combined(Criterion):
-    """phi = posture term + sum of weight (b' S + 1/2 S' B S) over the terms, see `Term`.
+    """phi = share * posture term + sum of weight (b' S + 1/2 S' B S) over the terms, see `Term`.
 
+    `share` is the product of what the terms leave of the posture term.
     `elapsed` is what the tick's part of the path takes at the programme's cruising speed, s.
     """
 
@@ -33,14 +35,18 @@ class Combined(Criterion):
 
     def begun(self, q: Array) -> Criterion:
         """The same with b and B of a posture."""
+        terms = [entry for entry in self._terms if entry.term.acts(q)]
+        if not terms:
+            return self._base.begun(q)
         linear = np.zeros(q.size)
-        hessian = self._base.hessian()
-        for entry in self._terms:
+        share = prod(entry.term.posture_share(q) for entry in terms)
+        hessian = share * self._base.hessian()
+        for entry in terms:
             linear = linear + entry.weight * entry.term.linear(q, self._elapsed)
             added = entry.term.quadratic(q)
             if added is not None:
                 hessian = _sum(hessian, entry.weight * added)
-        return _Begun(self.name, self._base, linear, hessian)
+        return _Begun(self.name, self._base, share, linear, hessian)
 
     def value(self, q: Array, step: Array) -> float:
         """phi at a step."""
@@ -62,24 +68,25 @@ class _Begun(Criterion):
     criterion against something else, as slowing down does, is not put off by large terms.
     """
 
-    def __init__(self, name: str, base: Criterion, linear: Array, hessian: Array) -> None:
+    def __init__(self, name: str, base: Criterion, share: float, linear: Array, hessian: Array) -> None:
         self.name = name
         self._base = base
+        self._share = share
         own = base.hessian()
-        size = float(np.sum(hessian if hessian.ndim == 1 else np.diag(hessian)))
-        self._scale = float(np.sum(own)) / size
+        size = float((hessian if hessian.ndim == 1 else hessian.diagonal()).sum())
+        self._scale = float(own.sum()) / size
         self._linear = linear
-        self._added = _sum(hessian, -own)
+        self._added = _sum(hessian, -share * own)
         self._hessian = self._scale * hessian
 
     def value(self, q: Array, step: Array) -> float:
         """phi at a step, scaled."""
         added = float(self._linear @ step + 0.5 * step @ times(self._added, step))
-        return self._scale * (self._base.value(q, step) + added)
+        return self._scale * (self._share * self._base.value(q, step) + added)
 
     def gradient(self, q: Array, step: Array) -> Array:
         """Its derivative by the step."""
-        whole = self._base.gradient(q, step) + self._linear + times(self._added, step)
+        whole = self._share * self._base.gradient(q, step) + self._linear + times(self._added, step)
         return self._scale * whole
 
     def hessian(self) -> Array:
@@ -92,4 +99,6 @@ def _sum(first: Array, second: Array) -> Array:
     if first.ndim == second.ndim:
         return first + second
     whole, diagonal = (first, second) if first.ndim == 2 else (second, first)
-    return whole + np.diag(diagonal)
+    added: Array = whole.copy()
+    added.flat[:: len(diagonal) + 1] += diagonal
+    return added

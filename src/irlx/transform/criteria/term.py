@@ -43,6 +43,14 @@ class Term(ABC):
         """B, symmetric and positive semidefinite: a diagonal (n,), or whole (n, n), or None for none."""
         return None
 
+    def acts(self, q: Array) -> bool:
+        """Whether there is anything of it in a tick that begins at posture q (n,)."""
+        return True
+
+    def posture_share(self, q: Array) -> float:
+        """Part of the posture term that counts beside this one."""
+        return 1.0
+
 
 class MeasureTerm(Term):
     """Goes down (up, where large values are good) the gradient of a measure: b = sense gain elapsed dc/dq.

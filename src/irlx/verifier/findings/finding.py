@@ -12,7 +12,10 @@ NO_CASE = "no case"
 
 @dataclass(frozen=True)
 class Finding:
-    """A value at a place: what is allowed there, tick, joint name (or None), block id, program line, unit."""
+    """A value at a place: what is allowed there, tick, joint name (or None), block id, program line, unit.
+
+    `pair` names two bodies where the value is a distance between them.
+    """
 
     value: float
     allowed: float
@@ -21,9 +24,11 @@ class Finding:
     block: int = 0
     line: int | None = None
     unit: str = ""
+    pair: str | None = None
 
     def __str__(self) -> str:
         joint = f", joint {self.joint}" if self.joint is not None else ""
+        joint += f", {self.pair}" if self.pair is not None else ""
         line = f", line {self.line}" if self.line is not None else ""
         block = f", block {self.block}" if self.block else ""
         unit = f" {self.unit}" if self.unit else ""

@@ -69,6 +69,8 @@ def _row(check: Check) -> tuple[str, ...]:
     place = [f"tick {worst.tick}"]
     if worst.joint is not None:
         place.append(f"joint {worst.joint}")
+    if worst.pair is not None:
+        place.append(worst.pair)
     if worst.line is not None:
         place.append(f"line {worst.line}")
     return check.name, status, f"{worst.value:.6g}{unit}", f"{worst.allowed:.6g}", ", ".join(place)
@@ -110,6 +112,7 @@ def _finding_to_plain(finding: Finding | None) -> dict[str, Any] | None:
         "block": finding.block,
         "line": finding.line,
         "unit": finding.unit,
+        **({} if finding.pair is None else {"pair": finding.pair}),
     }
 
 

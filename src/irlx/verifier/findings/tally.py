@@ -31,8 +31,10 @@ class Tally:
         offends: NDArray[np.bool_] | None = None,
         rank: Floats | None = None,
         unit: str = "",
+        pair: str | None = None,
     ) -> None:
-        """Add the values of `rows` (indices into the stream), in one `unit` where the check has several.
+        """Add the values of `rows` (indices into the stream), in one `unit` where the check has several;
+        all of one `pair` of bodies where they are distances.
 
         By default a value offends where it is not <= `allowed` (so that nan does), and the worst is
         the largest. `rank` orders values otherwise; rank -inf never becomes the worst.
@@ -46,20 +48,23 @@ class Tally:
         top = int(np.argmax(rank))
         if rank.flat[top] > self._worst_rank:
             self._worst_rank = float(rank.flat[top])
-            self._worst = self._finding(rows, value, allowed, top, unit)
+            self._worst = self._finding(rows, value, allowed, top, unit, pair)
         if offends.any():
-            found = self._finding(rows, value, allowed, _first(offends, rank), unit)
+            found = self._finding(rows, value, allowed, _first(offends, rank), unit, pair)
             if self._first is None or found.tick < self._first.tick:
                 self._first = found
 
-    def _finding(self, rows: Integers, value: Floats, allowed: Floats, flat: int, unit: str) -> Finding:
+    def _finding(
+        self, rows: Integers, value: Floats, allowed: Floats, flat: int, unit: str, pair: str | None
+    ) -> Finding:
         row = int(rows[flat if value.ndim == 1 else flat // value.shape[1]])
         names = self._outline.header.joint_names
         joint = None if value.ndim == 1 else names[flat % value.shape[1]]
         block = self._outline.block_at(row)
         line = self._outline.lines.get(block)
         unit = unit or self._unit_of(joint)
-        return Finding(float(value.flat[flat]), float(allowed.flat[flat]), row, joint, block, line, unit)
+        found = float(value.flat[flat]), float(allowed.flat[flat])
+        return Finding(*found, row, joint, block, line, unit, pair)
 
     def _unit_of(self, joint: str | None) -> str:
         """The check's unit; of units for joints that turn and slide ('rad/s|m/s') the joint's own."""
@@ -68,6 +73,16 @@ class Tally:
         header = self._outline.header
         turns = header.joint_units[header.joint_names.index(joint)] == "rad"
         return next(unit for unit in self.unit.split("|") if unit.startswith("rad") is turns)
+
+    @property
+    def worst_rank(self) -> float:
+        """Rank of the worst value so far, -inf before there is any."""
+        return self._worst_rank
+
+    @property
+    def worst(self) -> Finding | None:
+        """The worst value so far."""
+        return self._worst
 
     @property
     def first(self) -> Finding | None:

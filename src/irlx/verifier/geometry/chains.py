@@ -101,9 +101,13 @@ class ChainWay:
 
     @property
     def left(self) -> float:
-        """Way to the end of the last leg, blends not reached yet being counted as corners, m."""
-        behind = self._legs[self._part.leg + 1 :]
-        return self.length + sum(leg.curve.length for leg in behind)
+        """Way to the end of the last leg, blends not known yet being counted as corners, m."""
+        known = len(self._bases) - 1
+        return self._bases[known] + sum(leg.curve.length for leg in self._legs[known:])
+
+    def begin_at(self, way: float) -> None:
+        """Let the rows begin at a place on the first leg, m from its start."""
+        self._near, self._along = (self._part, way), way
 
     def take(self, positions: Floats, rotations: Floats, final: bool) -> Placed:
         """Place the next rows (positions (R, 3), rotations (R, 3, 3)), or the first of them.

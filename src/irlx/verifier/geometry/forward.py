@@ -20,13 +20,19 @@ def forward(robot: RobotDescription, q: Floats) -> tuple[Floats, Floats]:
     rotation = np.broadcast_to(np.eye(3), (rows, 3, 3)).copy()
     columns = {joint.name: index for index, joint in enumerate(robot.axes)}
     for joint in robot.chain:
-        position += rotation @ np.array(joint.xyz)
-        rotation = _times(rotation, from_rpy(joint.rpy))
-        if joint.kind is not JointKind.FIXED:
-            held = np.full(rows, robot.locked.get(joint.name, 0.0))
-            values = q[:, columns[joint.name]] if joint.name in columns else held
-            position, rotation = _move(joint, values, position, rotation)
+        held = np.full(rows, robot.locked.get(joint.name, 0.0))
+        values = q[:, columns[joint.name]] if joint.name in columns else held
+        position, rotation = after_joint(joint, values, position, rotation)
     return position, rotation
+
+
+def after_joint(joint: Joint, values: Floats, position: Floats, rotation: Floats) -> tuple[Floats, Floats]:
+    """Poses of a joint's child from those of its parent, (N, 3) m and (N, 3, 3), at joint values (N,)."""
+    position = position + rotation @ np.array(joint.xyz)
+    rotation = _times(rotation, from_rpy(joint.rpy))
+    if joint.kind is JointKind.FIXED:
+        return position, rotation
+    return _move(joint, values, position, rotation)
 
 
 def _move(joint: Joint, values: Floats, position: Floats, rotation: Floats) -> tuple[Floats, Floats]:

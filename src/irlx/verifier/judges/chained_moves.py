@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from irlx.promises import PATH_ORIENTATION, PATH_POSITION, PATH_STEP, PROGRAM_EXCESS
 from irlx.streams.joint_stream import Floats, Integers
-from irlx.verifier.chain_legs import ChainLegs
+from irlx.verifier.chain_legs import ChainLegs, end_reach
 from irlx.verifier.demands import Demand
 from irlx.verifier.findings.tally import Tally
 from irlx.verifier.geometry.chains import ChainWay, Placed
@@ -58,9 +58,21 @@ class _Waiting:
 
 
 class ChainRows:
-    """The rows of one chain, given to it in order; `legs` is its geometry."""
+    """The rows of one chain, given to it in order; `legs` is its geometry.
 
-    def __init__(self, chain: tuple[Demand, ...], legs: ChainLegs, dt: float, tallies: ChainTallies) -> None:
+    Where it comes from a PTP, or leads into one, rows about that corner lie on no path: up to the first one
+    on it that is farther from the start than `start_reach` m or half of the first leg, and from the first
+    one on that is nearer to the end than the blend. None of them is farther from the corner itself.
+    """
+
+    def __init__(
+        self,
+        chain: tuple[Demand, ...],
+        legs: ChainLegs,
+        dt: float,
+        tallies: ChainTallies,
+        start_reach: float = 0.0,
+    ) -> None:
         self._chain, self._legs, self._tallies, self._dt = chain, legs, tallies, dt
         self._way = ChainWay(list(legs.legs), REACH * float(np.max(legs.speed)) * dt)
         start = chain[0].start.pose
@@ -74,9 +86,20 @@ class ChainRows:
         self._accelerations = np.zeros(2)
         self._speeds, self._sharp = np.zeros((3, 1)), np.zeros(1, dtype=np.bool_)
         self._furthest, self._unknown = 0.0, False
+        first = legs.legs[0].curve
+        self._reaches = min(start_reach, first.room[0]), end_reach(chain[-1])
+        self._begun = _Waiting(start) if chain[0].crosses[0] else None
+        self._held = _Waiting(start) if chain[-1].crosses[1] else None
+        self._hint = 0.0
 
     def take(self, poses: Pose, rows: Integers, block: int, final: bool) -> None:
         """Look at the next rows, those of one block; `final` are the last ones of the chain."""
+        if self._begun is not None:
+            poses, rows = self._behind_start(self._begun, poses, rows, block)
+            if self._begun is not None and not final:
+                return
+        if self._held is not None:
+            poses, rows = self._before_end(self._held, poses, rows, block)
         waiting = self._waiting
         waiting.add(poses, rows, block)
         placed = self._way.take(waiting.positions[1:], waiting.rotations[1:], final)
@@ -85,9 +108,86 @@ class ChainRows:
         if judged and not self._unknown:
             self._judge(placed.first(judged))
         self._unknown = self._unknown or judged < count
-        if final and self._chain[-1].move.finished:
+        if final and self._held is not None:
+            self._add_corner(self._held)
+        elif final and self._chain[-1].move.finished:
             self._add_end(waiting)
         self._waiting = waiting.without(count)
+
+    def _behind_start(
+        self, begun: _Waiting, poses: Pose, rows: Integers, block: int
+    ) -> tuple[Pose, Integers]:
+        """The rows behind the corner to the PTP before, two of which have to be on the path."""
+        begun.add(poses, rows, block)
+        positions, rotations = begun.positions[1:], begun.rotations[1:]
+        curve, corner = self._legs.legs[0].curve, begun.positions[0]
+        start = self._chain[0].start.pose
+        assert start is not None
+        way = curve.nearest(positions, 0.0)
+        inside = np.clip(way, 0.0, curve.length)
+        on = np.linalg.norm(positions - curve.points(inside), axis=1) <= PATH_POSITION
+        on &= angle_between(rotations, curve.rotations(inside)) <= PATH_ORIENTATION
+        beyond = np.flatnonzero(on & (way >= self._reaches[0] - PATH_STEP))
+        count = int(beyond[0]) if beyond.size else len(on)
+        away = np.linalg.norm(positions[:count] - corner, axis=1)
+        if count + 1 >= len(on):
+            if away.size and not away[-1] <= self._reaches[0] + PATH_POSITION:
+                # It ought to be on its path by now.
+                self._tallies.path[0].add(begun.rows[count - 1 : count], away[-1:], self._reaches[0])
+            nothing = np.zeros((0, 3)), np.zeros((0, 3, 3))
+            return nothing, rows[:0]
+        self._tallies.path[0].add(
+            begun.rows[:count],
+            away,
+            self._reaches[0] + PATH_POSITION,
+            rank=away / max(self._reaches[0], PATH_POSITION) * PATH_POSITION,
+        )
+        self._begun = None
+        left = begun.without(count + 2)
+        self._waiting = _Waiting((left.positions[0], left.rotations[0]))
+        if self._held is not None:
+            self._held = _Waiting((left.positions[0], left.rotations[0]))
+        self._alongs, self._points = way[count : count + 2], positions[count : count + 2]
+        self._furthest = float(way[count + 1])
+        self._hint = self._furthest if len(self._legs.legs) == 1 else 0.0
+        self._way.begin_at(self._furthest)
+        off = np.linalg.norm(positions[count + 1] - curve.points(way[count + 1 : count + 2]), axis=1)
+        self._tallies.path[0].add(begun.rows[count + 1 : count + 2], off, PATH_POSITION)
+        return (left.positions[1:], left.rotations[1:]), left.rows
+
+    def _before_end(self, held: _Waiting, poses: Pose, rows: Integers, block: int) -> tuple[Pose, Integers]:
+        """The rows that do not belong to the corner to the PTP behind; others are held."""
+        if block != self._ids[-1]:
+            if len(rows):
+                self._held = _Waiting((poses[0][-1], poses[1][-1]))
+            return poses, rows
+        held.add(poses, rows, block)
+        curve, goal = self._legs.legs[-1].curve, self._chain[-1].end.pose
+        assert goal is not None
+        way = curve.nearest(held.positions[1:], self._hint)
+        near = np.linalg.norm(held.positions[1:] - goal[0], axis=1) <= self._reaches[1] + PATH_POSITION
+        outside = np.flatnonzero(~((way > curve.length - self._reaches[1]) & near))
+        count = int(outside[-1]) + 1 if outside.size else 0
+        if count:
+            self._hint = float(way[count - 1])
+        left = held.without(count)
+        freed = held.positions[1 : count + 1], held.rotations[1 : count + 1]
+        released = held.rows[:count]
+        self._held = left
+        return freed, released
+
+    def _add_corner(self, held: _Waiting) -> None:
+        """The path has been run up to the corner, and in it the tool keeps to its speed."""
+        law = self._chain[-1].move.law
+        missing = np.array([self._way.left - self._reaches[1] - float(self._alongs[-1])])
+        allowed = law.speed * self._dt * (1.0 + PROGRAM_EXCESS) + PATH_POSITION
+        self._tallies.progress.add(self._lasts[-1:], missing, allowed, rank=missing / allowed, unit="m")
+        moved = np.linalg.norm(np.diff(held.positions, axis=0), axis=1)
+        turned = angle_between(held.rotations[1:], held.rotations[:-1])
+        for way, bound, unit in ((moved, law.speed, "m/s"), (turned, law.speed_ori, "rad/s")):
+            rates = way / self._dt
+            high = bound * (1.0 + PROGRAM_EXCESS) + 2.0 * PATH_STEP / self._dt
+            self._tallies.speed.add(held.rows, rates, bound, ~(rates <= high), rates / high, unit)
 
     def _known(self, placed: Placed) -> int:
         """How many rows lie before the corner of a move in which the stream breaks off: whither it goes from

@@ -15,6 +15,7 @@ from irlx.blocks import (
     JointIncrement,
     JointTarget,
     MoveBlock,
+    ObstacleBlock,
     PoseIncrement,
     PoseTarget,
     ReconfigureBlock,
@@ -30,8 +31,8 @@ from irlx.verifier.tools import Pose
 from irlx.verifier.way import course_of
 
 _LED_AWAY = (
-    "a limit was met, or a RECONFIGURATION, a frozen joint, a criterion, joint values or another tool led"
-    " away from the posture"
+    "a limit was met, or a RECONFIGURATION, a frozen joint, a criterion, an obstacle, joint values or"
+    " another tool led away from the posture"
 )
 
 
@@ -176,15 +177,14 @@ def _possible_returns(evidence: Evidence) -> dict[int, _Return]:
     found: dict[int, _Return] = {}
     start: int | None = None
     option, led_away = 0, False
-    criteria: set[str] = set()
+    added: frozenset[tuple[str, str]] = frozenset()
     for record in evidence.outline.records:
         block = record.block
         if isinstance(block, CyclicBlock):
             start, led_away = record.tick if block.active else None, False
             option = block.id
-        if isinstance(block, CriterionBlock):
-            criteria = criteria - {block.name} | ({block.name} if block.choice is not None else set())
-        led_away = led_away or bool(criteria) or _leads_away(block)
+        added = _added_after(added, block)
+        led_away = led_away or bool(added) or _leads_away(block)
         if start is None or _reconfigures(block) or not isinstance(block, MoveBlock):
             continue
         move = moves[block.id]
@@ -192,6 +192,17 @@ def _possible_returns(evidence: Evidence) -> dict[int, _Return]:
         if to_pose and move.finished and move.last > move.start and not evidence.demands[block.id].passes:
             found[block.id] = _Return(move, start, option, led_away)
     return found
+
+
+def _added_after(added: frozenset[tuple[str, str]], block: Block) -> frozenset[tuple[str, str]]:
+    """What counts beside the posture term once a block has executed: criteria, obstacles kept clear of."""
+    if isinstance(block, CriterionBlock):
+        key, active = ("CRITERION", block.name), block.choice is not None
+    elif isinstance(block, ObstacleBlock):
+        key, active = ("OBSTACLE", block.name.casefold()), block.active
+    else:
+        return added
+    return added | {key} if active else added - {key}
 
 
 def _leads_away(block: Block) -> bool:

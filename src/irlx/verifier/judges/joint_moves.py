@@ -9,6 +9,7 @@ from irlx.promises import JOINT_LINE
 from irlx.streams.joint_stream import Floats
 from irlx.verifier.evidence import Evidence
 from irlx.verifier.findings.finding import Check
+from irlx.verifier.judges.crossing_ptps import CrossingPtps
 from irlx.verifier.moves import MoveRows
 from irlx.verifier.rows import Rows, Stretch
 
@@ -27,12 +28,13 @@ class JointMoveChecks:
         self._progress = evidence.tally("PTP progress", "rad|m")
         self._goal = evidence.tally("joint goal", "rad|m")
         self._along = 0.0
+        self._crossing = CrossingPtps(evidence, self._straight, self._progress)
         for move in evidence.moves:
             if move.block.kind is MoveKind.PTP:
                 self._add_goal(move)
 
     def _is_joined(self, move: MoveRows) -> bool:
-        """Whether it runs from or into another PTP: then it need not be straight all the way."""
+        """Whether it runs from or into another move: then it need not be straight all the way."""
         demand = self._evidence.demands[move.block.id]
         return demand.passes or demand.follows
 
@@ -49,6 +51,7 @@ class JointMoveChecks:
             move = self._moves.get(stretch.block)
             if move is not None:
                 self._add(rows, stretch, move)
+            self._crossing.take(rows, stretch)
 
     def _add(self, rows: Rows, stretch: Stretch, move: MoveRows) -> None:
         start, end = self._evidence.posture(move.start), self._evidence.posture(move.last)

@@ -10,6 +10,7 @@ from irlx.promises import TOOL_ORIENTATION, TOOL_POSITION, rounding_allowance
 from irlx.robot.description import RobotDescription
 from irlx.robot.limits import JointLimits
 from irlx.robot.relation import JointRelation
+from irlx.scene.scene import Scene
 from irlx.streams.joint_stream import Floats, StreamHeader
 from irlx.verifier.evidence import Evidence
 from irlx.verifier.findings.finding import FAILED, NOT_CHECKED, OK, Check
@@ -21,12 +22,14 @@ from irlx.verifier.tools import Pose
 @dataclass(frozen=True)
 class Reference:
     """What a stream is judged by: a robot, and of its cell the robot's own limits and the start posture (n,),
-    rad or m; None where no cell is given. `relations` between the joints hold in that cell."""
+    rad or m; None where no cell is given. `relations` between the joints hold in that cell; `scene` is what
+    stands around its robot, None where that is not known."""
 
     robot: RobotDescription
     limits: JointLimits | None = None
     start: Floats | None = None
     relations: tuple[JointRelation, ...] = ()
+    scene: Scene | None = None
 
 
 def check_robot(header: StreamHeader, reference: Reference | None) -> Check:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from itertools import pairwise
 
 import numpy as np
 
@@ -44,8 +45,7 @@ class ToolMoveChecks:
         self._goal = evidence.tally("goal position", "m"), evidence.tally("goal orientation", "rad")
         self._path = evidence.tally("path position", "m"), evidence.tally("path orientation", "rad")
         self._progress = evidence.tally("path progress", "m|rad")
-        self._speed = evidence.tally("programmed speed", "m/s|rad/s")
-        self._acceleration = evidence.tally("programmed acceleration", "m/s2|rad/s2")
+        self._speed, self._acceleration = evidence.joint_rates
         self._time = evidence.tally("programmed time", "s")
         self._course: Course | None = None
         self._along, self._furthest = np.zeros(2), 0.0
@@ -53,6 +53,7 @@ class ToolMoveChecks:
         self._chains = {demand.move.block.id: chain for chain in evidence.chains for demand in chain}
         self._chain: ChainRows | None = None
         self._neighbours = _neighbours(list(evidence.demands.values()))
+        self._before = {number: before for before, number in pairwise(evidence.demands)}
         for chain in evidence.chains:
             if chain[0].move.start == chain[-1].move.last:
                 self._add_resting_chain(chain)
@@ -87,12 +88,18 @@ class ToolMoveChecks:
     def _chain_of(self, chain: tuple[Demand, ...]) -> ChainRows | None:
         tallies = ChainTallies(self._goal, self._path, self._progress, self._speed, self._acceleration)
         try:
-            return ChainRows(chain, legs_of(chain), self._dt, tallies)
+            return ChainRows(chain, legs_of(chain), self._dt, tallies, self._start_reach(chain[0]))
         except Unplaced as error:
             self._skipped |= {demand.move.block.id: str(error) for demand in chain}
         except NoCurve:
             pass
         return None
+
+    def _start_reach(self, demand: Demand) -> float:
+        """How far from its start a move of the tool may be off its way: as far as the PTP before it led."""
+        if not demand.crosses[0]:
+            return 0.0
+        return self._evidence.reaches.get(-self._before[demand.move.block.id], np.inf)
 
     def _add_resting_chain(self, chain: tuple[Demand, ...]) -> None:
         """A chain without rows must have no way to go."""
@@ -120,7 +127,9 @@ class ToolMoveChecks:
         if stretch.ends and move.finished and not (demand.passes or demand.follows):
             self._add_time(rows, stretch, course)
         if move.block.kind is MoveKind.PTP:
-            self._add_joint_rates(rows, stretch, move)
+            # Beside a move of the tool its rows are judged by `CrossingPtps`.
+            if not any(demand.crosses):
+                self._add_joint_rates(rows, stretch, move)
         elif course.way is not None:
             self._add_path(rows, stretch, course)
             self._add_tool_speed(rows, stretch, course)

@@ -1,0 +1,280 @@
+"""How far a robot is from what it keeps clear of, by coal through Pinocchio."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+
+from irlx.robot.kinematics import Kinematics
+from irlx.scene.collision_shape import bounding_radius, collision_shape, pose_of
+from irlx.scene.levers import Levers
+from irlx.scene.trajectory import Trajectory
+from irlx.scene.watched_pair import WatchedPair
+from irlx.solids.shape import Solid
+
+Array = NDArray[np.float64]
+Numbers = NDArray[np.intp]
+
+_TOLERANCE = 1e-9
+"""What the search for nearest points may leave (m)."""
+
+_COARSER = (1e-8, 1e-7, 1e-6, 1e-5)
+"""The same where solids overlap and the search gives up at less."""
+
+_ENDLESS = 1e100
+_GUESS = np.array([1.0, 0.0, 0.0])
+_FIRST_VERTICES = np.zeros(2, dtype=np.int32)
+_CROSS = np.zeros((3, 9))
+"""A point times this is the matrix, row by row, that turns an angular velocity into the point's velocity."""
+_CROSS[0, [5, 7]] = 1.0, -1.0
+_CROSS[1, [2, 6]] = -1.0, 1.0
+_CROSS[2, [1, 3]] = 1.0, -1.0
+
+
+@dataclass(frozen=True)
+class Near:
+    """Pairs that are near in a posture, P of them, by their numbers `pairs` (P,).
+
+    `distance` (P,) m, negative where they overlap; `away` (P, 3) unit vectors in the world along which the
+    link leaves the other one; the nearest points `on_link` and `on_other` (P, 3) m in the world.
+    """
+
+    pairs: Numbers
+    distance: Array
+    away: Array
+    on_link: Array
+    on_other: Array
+
+    def chosen(self, which: NDArray[np.bool_]) -> Near:
+        """Those of the pairs (P,) that are True."""
+        points = self.on_link[which], self.on_other[which]
+        return Near(self.pairs[which], self.distance[which], self.away[which], *points)
+
+
+class Distances:
+    """Distances between watched pairs of solids.
+
+    A pair is looked at again only where the joints have moved far enough since it was looked at last
+    (`Levers`), and once in a posture; what is found does not depend on that. Not safe for use by several
+    threads at once.
+    """
+
+    def __init__(self, kinematics: Kinematics, pairs: Sequence[WatchedPair]) -> None:
+        self.kinematics = kinematics
+        self.pairs = tuple(pairs)
+        self.margin = np.array([pair.margin for pair in pairs])
+        self.influence = np.array([pair.influence for pair in pairs])
+        self._model = pin.GeometryModel()
+        self._numbers: dict[tuple[str, bool, int], int] = {}
+        self._bodies: list[int] = []
+        self._radii: list[float] = []
+        self._sizes: list[float] = []
+        self._moving: list[tuple[int, pin.SE3, Trajectory]] = []
+        self._speeds: list[float] = []
+        self._first = np.array([self._add_of_link(p.link, p.solid) for p in pairs], dtype=np.intp)
+        self._second = np.array([self._add_other(p) for p in pairs], dtype=np.intp)
+        for first, second in zip(self._first, self._second, strict=True):
+            self._model.addCollisionPair(pin.CollisionPair(int(first), int(second)))
+        self._geometry = pin.GeometryData(self._model)
+        self._requests = list(self._geometry.distanceRequests)
+        for request in self._requests:
+            request.gjk_tolerance = request.epa_tolerance = _TOLERANCE
+        self._data = kinematics.model.createData()
+        self._levers = Levers.of(kinematics, self._bodies, self._radii, self._first, self._second)
+        self._last = np.zeros(kinematics.joints)
+        self._least = np.full(len(pairs), -np.inf)
+        self._slack = -np.inf
+        self._longest = self._levers.longest
+        self._here: Array | None = None
+        sizes = np.array(self._sizes)
+        # Half-spaces have no size; what they give is taken for as long as it is a distance at all.
+        deepest = -(sizes[self._first] + sizes[self._second]) if len(pairs) else np.zeros(0)
+        self._deepest = np.where(np.isfinite(deepest), deepest, -_ENDLESS)
+        self._known = np.zeros(len(pairs), dtype=np.bool_)
+        self._found = np.empty((len(pairs), 10))
+        self._all_near: Near | None = None
+        self._columns: Array = self._data.J
+        self._carries = np.zeros((kinematics.model.njoints, kinematics.joints))
+        for joint in range(1, kinematics.model.njoints):
+            self._carries[joint, [above - 1 for above in kinematics.model.supports[joint] if above]] = 1.0
+        bodies = np.array(self._bodies, dtype=np.intp)
+        self._first_body = bodies[self._first] if len(pairs) else self._first
+        self._second_body = bodies[self._second] if len(pairs) else self._second
+        self._time = self._looked_at = 0.0
+        self._rates = np.array([self._speeds[k] for k in self._second])
+        self._fastest = float(np.max(self._rates, initial=0.0))
+
+    def at_time(self, time: float) -> None:
+        """Put the obstacles that move where they are at a `time` (s) of the run."""
+        if not self._moving or time == self._time:
+            return
+        self._time, self._here, self._all_near = time, None, None
+        for number, within, trajectory in self._moving:
+            self._model.geometryObjects[number].placement = trajectory.pose(time) * within
+
+    @property
+    def moves(self) -> bool:
+        """Whether any obstacle moves."""
+        return bool(self._moving)
+
+    def far(self, q: Array) -> bool:
+        """Whether it is certain without a look that no pair is within its influence at posture q (n,)."""
+        if self._slack <= 0.0 or self._longest is None:
+            return False
+        moved = self._longest.dot(np.abs(q - self._last))
+        if self._moving:
+            moved += self._fastest * abs(self._time - self._looked_at)
+        return bool(moved < self._slack)
+
+    def near(self, q: Array, within: Array | None = None) -> Near:
+        """Pairs nearer than `within` (K,) m, by default their influence, at posture q (n,)."""
+        everything = within is None
+        if everything and self._all_near is not None and _same(q, self._last):
+            return self._all_near
+        reach = self.influence if within is None else within
+        least = self._least - self._levers.moved(self._last, q)
+        if self._moving:
+            least = least - self._rates * abs(self._time - self._looked_at)
+            self._looked_at = self._time
+        asked = (least < reach).nonzero()[0]
+        found = self.of(q, asked)
+        least[asked] = found.distance
+        self._least, self._last = least, q.copy()
+        self._slack = float((least - self.influence).min(initial=np.inf))
+        close = found.distance < reach[asked]
+        found = found if np.count_nonzero(close) == len(asked) else found.chosen(close)
+        self._all_near = found if everything else None
+        return found
+
+    def of(self, q: Array, pairs: Numbers) -> Near:
+        """These pairs at posture q (n,), however far."""
+        if len(pairs):
+            self._place(q)
+            for pair in pairs[~self._known[pairs]].tolist():
+                self._look(pair)
+        found = self._found[pairs]
+        return Near(pairs, found[:, 0], found[:, 1:4], found[:, 4:7], found[:, 7:])
+
+    def _look(self, pair: int) -> None:
+        found = self._found[pair]
+        self._search(pair, found)
+        if not found[0] >= self._deepest[pair]:
+            self._search_coarsely(pair, found)
+        if not found[0] >= self._deepest[pair]:
+            self._mend(pair, found)
+        self._known[pair] = True
+
+    def _search(self, pair: int, found: Array) -> None:
+        # Pinocchio begins where the last search ended: bits would depend on what was asked before.
+        request = self._requests[pair]
+        request.cached_gjk_guess, request.cached_support_func_guess = _GUESS, _FIRST_VERTICES
+        result = pin.computeDistance(self._model, self._geometry, pair)
+        found[0] = result.min_distance
+        found[1:4] = result.normal
+        np.negative(found[1:4], out=found[1:4])
+        found[4:7] = result.getNearestPoint1()
+        found[7:] = result.getNearestPoint2()
+
+    def _search_coarsely(self, pair: int, found: Array) -> None:
+        """How deep an overlap is, where rounding ends the search at the usual tolerance without a result."""
+        request = self._requests[pair]
+        for request.epa_tolerance in _COARSER:
+            self._search(pair, found)
+            if found[0] >= self._deepest[pair]:
+                break
+        request.epa_tolerance = _TOLERANCE
+
+    def _mend(self, pair: int, found: Array) -> None:
+        """What solids that overlap are to each other where the search has ended at what they cannot be.
+
+        Deep inside each other it may. Then the spheres about both solids count, or the half-space, with
+        their middles as nearest points.
+        """
+        first, second = int(self._first[pair]), int(self._second[pair])
+        link, other = self._geometry.oMg[first], self._geometry.oMg[second]
+        way = link.translation - other.translation
+        length, size = float(np.linalg.norm(way)), self._sizes[second]
+        if np.isfinite(size):
+            away = way / length if length > 0.0 else np.array([0.0, 0.0, 1.0])
+        else:
+            away, size = other.rotation[:, 2], 0.0
+        found[0] = min(float(way.dot(away)) - size - self._sizes[first], 0.0)
+        found[1:4], found[4:7], found[7:] = away, link.translation, other.translation
+
+    def jacobians(self, q: Array, near: Near) -> Array:
+        """d(point on link - point on other)/dq (P, 3, n), both points fixed on their bodies, at posture q."""
+        if not len(near.pairs):
+            return np.zeros((0, 3, q.size))
+        self._place(q)
+        found = self._point_jacobians(self._first_body[near.pairs], near.on_link)
+        second = self._second_body[near.pairs]
+        if np.count_nonzero(second):
+            found -= self._point_jacobians(second, near.on_other)
+        return found
+
+    def rates(self, q: Array, near: Near) -> Array:
+        """d(distance)/dq (P, n) at posture q: the same along `away`."""
+        if not len(near.pairs):
+            return np.zeros((0, q.size))
+        return np.asarray(np.matmul(near.away[:, None, :], self.jacobians(q, near))[:, 0, :])
+
+    def _point_jacobians(self, bodies: Numbers, points: Array) -> Array:
+        """Jacobians (P, 3, n) of points (P, 3) in the world, each fixed on one of the bodies (P,)."""
+        turned = points.dot(_CROSS).reshape(-1, 3)
+        found = turned.dot(self._columns[3:]).reshape(-1, 3, self.kinematics.joints)
+        found += self._columns[:3]
+        found *= self._carries[bodies][:, None, :]
+        return np.asarray(found)
+
+    def _place(self, q: Array) -> None:
+        if self._here is not None and _same(q, self._here):
+            return
+        pin.computeJointJacobians(self.kinematics.model, self._data, q)
+        pin.updateGeometryPlacements(self.kinematics.model, self._data, self._model, self._geometry)
+        self._columns = self._data.J
+        self._here = q.copy()
+        self._known[:] = False
+
+    # ---- building
+
+    def _add_of_link(self, link: str, solid: Solid) -> int:
+        joint, frame = self.kinematics.body_of(link)
+        return self._add(("link", True, id(solid)), joint, frame * pose_of(solid.placement), solid)
+
+    def _add_other(self, pair: WatchedPair) -> int:
+        if pair.obstacle is None:
+            return self._add_of_link(pair.other, pair.other_solid)
+        within = pose_of(pair.other_solid.placement)
+        world = pose_of(pair.obstacle.placement) * within
+        known = len(self._numbers)
+        number = self._add((pair.other, False, id(pair.other_solid)), 0, world, pair.other_solid)
+        if pair.obstacle.trajectory and number == known:
+            trajectory = Trajectory(pair.obstacle)
+            radius = float(np.linalg.norm(within.translation)) + bounding_radius(pair.other_solid.shape)
+            self._speeds[number] = trajectory.fastest(radius)
+            self._model.geometryObjects[number].placement = trajectory.pose(0.0) * within
+            self._moving.append((number, within, trajectory))
+        return number
+
+    def _add(self, key: tuple[str, bool, int], joint: int, pose: pin.SE3, solid: Solid) -> int:
+        number = self._numbers.get(key)
+        if number is None:
+            shape: Any = collision_shape(solid.shape)
+            name = f"solid {len(self._numbers)}"
+            number = int(self._model.addGeometryObject(pin.GeometryObject(name, joint, pose, shape)))
+            self._numbers[key] = number
+            self._bodies.append(joint)
+            self._speeds.append(0.0)
+            size = bounding_radius(solid.shape)
+            self._radii.append(float(np.linalg.norm(pose.translation)) + size)
+            self._sizes.append(size)
+        return number
+
+
+def _same(first: Array, second: Array) -> bool:
+    return first is second or np.count_nonzero(first == second) == second.size

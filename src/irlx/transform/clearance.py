@@ -1,0 +1,251 @@
+"""Keeping clear: rows of a tick within which no pair of solids comes nearer than its margin.
+
+A pair that is d0 away at the start of a tick of dt may lose the part dt/tau of what is left above its margin,
+
+    d(q + S) >= floor,    floor = d0 - (d0 - margin) dt/tau,
+
+one that is inside its margin none of what it had when the motion began. S is the whole step of the tick.
+Distances are linearised at the iterates of Newton's method, until these hardly move any more: a distance
+bends, but little over so short a way, and a row that stays the same lets the steps settle.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irlx.scene.distances import Distances, Near
+
+Array = NDArray[np.float64]
+Numbers = NDArray[np.intp]
+
+APPROACH_TIME = 0.1
+"""Time constant tau (s) with which a pair comes near its margin."""
+
+RESERVE = 2e-6
+"""Distance (m) that ticks keep beside a margin: room for what `ALLOWANCE` lets them lose of it."""
+
+ALLOWANCE = 1e-6
+"""By how much (m) a solved tick may pass its floors."""
+
+_BENDS = 1e-4
+_NEAR_MARGIN = 0.01
+_MOST_LOOKS = 8
+
+
+@dataclass(frozen=True)
+class SideRows:
+    """Inequalities matrix @ d >= lower of a step d: (P, n) and (P,)."""
+
+    matrix: Array
+    lower: Array
+
+    def hold(self, d: Array) -> bool:
+        """Whether a step keeps them, rounding allowed for."""
+        return bool(np.all(self.matrix @ d >= self.lower - 1e-13))
+
+
+@dataclass(frozen=True)
+class TooNear:
+    """The pair of a posture that is nearest to what it must keep: its number, and both distances (m)."""
+
+    pair: int
+    distance: float
+    floor: float
+
+
+class Clearance:
+    """Pairs to be kept clear of each other in a motion that begins at the time `begin` (s) of the run."""
+
+    def __init__(self, distances: Distances, begin: float = 0.0) -> None:
+        self.distances = distances
+        self.begin = begin
+        self._at_start: Near | None = None
+        self._start: Array = np.zeros(0)
+        self._start_distance: Array = np.zeros(0)
+
+    def beginning(self, time: float) -> Clearance:
+        """The same for a motion that begins at a `time` (s)."""
+        return Clearance(self.distances, time)
+
+    def after(self, elapsed: float) -> Distances:
+        """The distances, obstacles placed where they are `elapsed` s after the begin of the motion."""
+        self.distances.at_time(self.begin + elapsed)
+        return self.distances
+
+    def tick(
+        self, q: Array, dt: float, elapsed: float = 0.0, reserve: float = RESERVE, paced: bool = True
+    ) -> TickClearance | None:
+        """The floors of a tick of dt s that begins at posture q (n,), `elapsed` s after the motion has begun.
+
+        What is not `paced` may come down to its margin at once.
+        None where everything is far; where a step from there comes near something, `nears` tells.
+        """
+        if self.after(elapsed).far(q):
+            self._at_start = None if elapsed == 0.0 else self._at_start
+            return None
+        return self._tick(q, dt, elapsed, reserve, paced)
+
+    def watched_tick(self, q: Array, dt: float, elapsed: float) -> TickClearance:
+        """The same where something may come near, however far it is at the start of the tick."""
+        return self._tick(q, dt, elapsed, RESERVE, True)
+
+    def _tick(self, q: Array, dt: float, elapsed: float, reserve: float, paced: bool) -> TickClearance:
+        distances = self.after(elapsed)
+        if elapsed == 0.0:
+            self._at_start = distances.near(q, distances.margin + _NEAR_MARGIN)
+        least = distances.margin + reserve
+        lowest = least.copy()
+        if self._at_start is not None:
+            inside = self._at_start.pairs
+            lowest[inside] = np.minimum(least[inside], self._at_start.distance)
+        return TickClearance(distances, q, dt, (least, lowest), self.begin + elapsed, paced)
+
+    def nears(self, q: Array, elapsed: float) -> bool:
+        """Whether a tick that began without floors must not end at q (n,) unseen."""
+        return not self.after(elapsed).far(q)
+
+    def short(self, q: Array, start: Array, elapsed: float = 0.0) -> TooNear | None:
+        """The pair of posture q (n,) that is nearer than it may be in a motion from `start` (n,); None: none.
+
+        What was inside its margin at the start may stay as near as it was.
+        """
+        floors = self.floors(np.arange(len(self.distances.pairs)), start) if self.distances.moves else None
+        self.after(elapsed)
+        near = self._within(q)
+        least = self.floors(near.pairs, start) if floors is None else floors[near.pairs]
+        room = near.distance - least
+        if not np.any(room < -ALLOWANCE):
+            return None
+        k = int(np.argmin(room))
+        return TooNear(int(near.pairs[k]), float(near.distance[k]), float(least[k]))
+
+    def inside_margin(self, q: Array) -> TooNear | None:
+        """The pair of posture q (n,) that is deepest inside its margin; None where none is."""
+        near = self.distances.near(q, self.distances.margin)
+        if not len(near.pairs):
+            return None
+        margin = self.distances.margin[near.pairs]
+        k = int(np.argmin(near.distance - margin))
+        return TooNear(int(near.pairs[k]), float(near.distance[k]), float(margin[k]))
+
+    def first_short(self, q: Array, start: Array, elapsed: Array | None = None) -> tuple[int, TooNear] | None:
+        """The first of postures q (N, n), at times `elapsed` (N,), at which `short` finds a pair.
+
+        With that pair; None where there is none.
+        """
+        times = np.zeros(len(q)) if elapsed is None else elapsed
+        for row, (posture, time) in enumerate(zip(q, times.tolist(), strict=True)):
+            found = None if self.after(time).far(posture) else self.short(posture, start, time)
+            if found is not None:
+                return row, found
+        return None
+
+    def nearest(self, q: Array, start: Array) -> TooNear | None:
+        """The pair with the least room above what it must keep at q (n,), of those within their influence."""
+        near = self._within(q)
+        if not len(near.pairs):
+            return None
+        floors = self.floors(near.pairs, start)
+        k = int(np.argmin(near.distance - floors))
+        return TooNear(int(near.pairs[k]), float(near.distance[k]), float(floors[k]))
+
+    def _within(self, q: Array) -> Near:
+        return self.distances.near(q, within(self.distances, self.distances.margin + RESERVE))
+
+    def floors(self, pairs: Numbers, start: Array, reserve: float = 0.0) -> Array:
+        """Distance (P,) that pairs must keep in a motion from posture `start` (n,): margin and reserve, m.
+
+        What is nearer at the start may stay as near as it is.
+        """
+        least = self.distances.margin[pairs] + reserve
+        if not np.array_equal(start, self._start):
+            self._start = start.copy()
+            self._start_distance = np.full(len(self.distances.pairs), np.nan)
+        unknown = pairs[np.isnan(self._start_distance[pairs])]
+        if len(unknown):
+            self._start_distance[unknown] = self.after(0.0).of(start, unknown).distance
+        return np.asarray(np.minimum(least, self._start_distance[pairs]))
+
+
+def within(distances: Distances, least: Array) -> Array | None:
+    """From where on (K,), m, pairs may be nearer than `least` (K,); None where influences contain that."""
+    return np.maximum(distances.influence, least) if np.any(least > distances.influence) else None
+
+
+class TickClearance:
+    """Floors (P,) of the pairs of one tick, and the rows that they are at an iterate."""
+
+    def __init__(
+        self,
+        distances: Distances,
+        q: Array,
+        dt: float,
+        least: tuple[Array, Array],
+        time: float,
+        paced: bool = True,
+    ) -> None:
+        """A tick of dt s from posture q (n,) at a `time` (s) of the run.
+
+        `least` are the distances (K,) of all pairs that are kept, and those that pairs inside of these keep.
+        """
+        self._distances = distances
+        self._end = time + dt
+        distances.at_time(time)
+        self._q = q
+        self._lowest = least[1]
+        self._within = within(distances, self._lowest)
+        self.near = distances.near(q)
+        pairs, found = self.near.pairs, self.near.distance
+        share = min(dt / APPROACH_TIME, 1.0) if paced else 1.0
+        lost = found - share * (found - least[0][pairs])
+        self.floors = np.where(found > least[0][pairs], lost, least[1][pairs])
+        self._looked_from = np.zeros_like(q)
+        self._gradient: Array | None = None
+        self._looks = 0
+
+    def rows(self, whole: Array) -> SideRows:
+        """Rows of the Newton step at the iterate `whole` (n,), the step since the start of the tick."""
+        moved = float(np.max(np.abs(whole - self._looked_from), initial=0.0))
+        if self._gradient is None or (moved > _BENDS and self._looks < _MOST_LOOKS):
+            self._look(whole)
+        assert self._gradient is not None
+        since = whole - self._looked_from
+        return SideRows(self._gradient, self.floors - self.near.distance - self._gradient @ since)
+
+    def kept(self, whole: Array) -> bool:
+        """Whether distances at the end of a step keep their floors; where not, rows are made anew there.
+
+        Pairs that were far at the start of the tick count with their margins.
+        """
+        distances = self._distances
+        distances.at_time(self._end)
+        there = distances.near(self._q + whole, self._within)
+        if not len(there.pairs):
+            return True
+        floor = self._lowest.copy()
+        floor[self.near.pairs] = self.floors
+        short = there.distance < floor[there.pairs] - ALLOWANCE
+        if not np.count_nonzero(short):
+            return True
+        pairs = np.union1d(self.near.pairs, there.pairs[short])
+        self.floors = floor[pairs]
+        self.near = distances.of(self._q, pairs)
+        self._gradient = None
+        return False
+
+    @property
+    def exhausted(self) -> bool:
+        """Whether looking again has not helped."""
+        return self._looks >= _MOST_LOOKS
+
+    def _look(self, whole: Array) -> None:
+        distances = self._distances
+        distances.at_time(self._end)
+        q = self._q + whole
+        self.near = distances.of(q, self.near.pairs)
+        self._gradient = distances.rates(q, self.near)
+        self._looked_from = whole.copy()
+        self._looks += 1

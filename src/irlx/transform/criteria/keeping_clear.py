@@ -1,0 +1,118 @@
+"""Keeping clear: the nearest points of the robot are led away from obstacles."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irlx.scene.distances import Distances
+from irlx.transform.criteria.term import Term
+
+Array = NDArray[np.float64]
+
+OBSTACLE_WEIGHT = 0.7
+"""a_obs: weight of the term, displacements in mm."""
+
+POSTURE_WEIGHT = 0.3
+"""a_conf: what is left of the posture term while an obstacle is near."""
+
+_SQUARE_MILLIMETRES = 1e6
+_STEP = 1e-3
+"""alpha R (m2): a critical point that is R away from its obstacle moves on by 1000/R mm, R in mm, .."""
+
+_PER_TIME = 0.05
+""".. in each time (s) of this length."""
+
+_FASTEST = 1.0
+"""Joint speed (rad/s, m/s) that a push may ask for at the programmed pace."""
+
+_NEAREST = 0.02
+_RAMP = 0.25
+_FALL = 4
+
+
+class KeepingClear(Term):
+    """Sum of w/2 a_obs |alpha v - J_k S|^2 over the pairs of a link and an obstacle within its influence.
+
+    J_k (3, n) is the Jacobian of the link's nearest point, its critical point, v the unit vector away from
+    the obstacle, alpha = 1e-3 m2 / R for every 50 ms of the way, R the distance (m; at least 20 mm).
+    Displacements count in mm. Where one pair is near, w = 1: that is the criterion of Koch's monograph,
+    section 7. Of several pairs at R_i that which is nearest, at R, counts most, w_i ~ (R / R_i)^4, all
+    weights together as one; over the last quarter of the influence distance w rises from 0, so that nothing
+    jumps. Where the tool's pose lets joints do little for it, alpha is less (`_pace`).
+    """
+
+    name = "keeping clear"
+
+    def __init__(self, distances: Distances, free: NDArray[np.bool_]) -> None:
+        """Of the pairs of `distances`, joints moving that are `free` (n,)."""
+        self._distances = distances
+        self._kinematics = distances.kinematics
+        self._free = free
+        self._pushing = np.array([pair.obstacle is not None for pair in distances.pairs], dtype=np.bool_)
+        self._q: Array | None = None
+        self._found: tuple[Array, Array, float] | None = None
+
+    def acts(self, q: Array) -> bool:
+        """Whether an obstacle is near."""
+        return not self._distances.far(q) and self._at(q)[2] > 0.0
+
+    def posture_share(self, q: Array) -> float:
+        """1 far from all obstacles, a_conf near one."""
+        return 1.0 - (1.0 - POSTURE_WEIGHT) * self._at(q)[2]
+
+    def linear(self, q: Array, elapsed: float) -> Array:
+        """-sum w a_obs alpha J_k' v."""
+        return self._at(q)[0] * (elapsed / _PER_TIME)
+
+    def quadratic(self, q: Array) -> Array | None:
+        """sum w a_obs J_k' J_k, shape (n, n)."""
+        found = self._at(q)
+        return found[1] if found[2] > 0.0 else None
+
+    def _at(self, q: Array) -> tuple[Array, Array, float]:
+        """b for 50 ms, B and the largest rise at posture q (n,)."""
+        if self._found is None or self._q is not q:
+            self._q, self._found = q, self._terms(q)
+        return self._found
+
+    def _terms(self, q: Array) -> tuple[Array, Array, float]:
+        distances = self._distances
+        near = distances.near(q)
+        pushing = self._pushing[near.pairs]
+        near = near if np.count_nonzero(pushing) == len(pushing) else near.chosen(pushing)
+        if not len(near.pairs):
+            return np.zeros(q.size), np.zeros((q.size, q.size)), 0.0
+        away = np.maximum(near.distance, _NEAREST)
+        influence = distances.influence[near.pairs]
+        inside = (influence - away) / (_RAMP * (influence - distances.margin[near.pairs]))
+        inside = np.minimum(np.maximum(inside, 0.0), 1.0)
+        rise = inside * inside * (3.0 - 2.0 * inside)
+        weight = rise * (away.min() / away) ** _FALL
+        weight = OBSTACLE_WEIGHT * _SQUARE_MILLIMETRES * weight / max(float(weight.sum()), 1.0)
+        points = distances.jacobians(q, near)
+        pulls = (weight * self._pace(q, near.away, points, _STEP / away))[:, None] * near.away
+        linear = -pulls.reshape(-1).dot(points.reshape(-1, q.size))
+        rows = (np.sqrt(weight)[:, None, None] * points).reshape(-1, q.size)
+        return linear, rows.T.dot(rows), float(rise.max())
+
+    def _pace(self, q: Array, away: Array, points: Array, alpha: Array) -> Array:
+        """alpha (P,), less where the joints would have to move fast for it with the tool held at posture q.
+
+        In the null space N of the tool's Jacobian the rate g = N' J_k' v opens the gap fastest; along g the
+        sum is least for a step of alpha |g|^3 / |J_k N g|^2, which is kept below `_FASTEST` in 50 ms. A point
+        next to the tool, which these joints hardly move, would else be worth any motion of them.
+        """
+        _, jacobian = self._kinematics.here(q)
+        free, m = self._free, jacobian.shape[0]
+        held = jacobian[:, free].T
+        if held.shape[0] <= m:
+            return np.zeros_like(alpha)
+        basis = np.linalg.qr(held, mode="complete")[0][:, m:]
+        moves = points[:, :, free] @ basis
+        gain = np.matmul(away[:, None, :], moves)[:, 0, :]
+        moved = np.matmul(moves, gain[:, :, None])[:, :, 0]
+        length = np.sqrt((gain * gain).sum(axis=1))
+        asked = alpha * length**3
+        most = _FASTEST * _PER_TIME * (moved * moved).sum(axis=1)
+        return np.where(asked > most, alpha * most / np.maximum(asked, 1e-300), alpha)

@@ -1,0 +1,153 @@
+"""Distances between a robot and what it keeps clear of."""
+
+import numpy as np
+import pytest
+
+from irlx.cell.packaged import packaged_urdf
+from irlx.robot.kinematics import Kinematics
+from irlx.robot.urdf import read_urdf
+from irlx.scene.collision_shape import bounding_radius
+from irlx.scene.distances import Distances
+from irlx.scene.obstacle import Obstacle
+from irlx.scene.scene import LinkClearance
+from irlx.scene.watched_pair import WatchedPair, watched_pairs
+from irlx.solids.placement import Placement
+from irlx.solids.shape import Box, Capsule, Cone, Cylinder, Halfspace, Point, Solid, Sphere
+
+SHAPES = (
+    Point(),
+    Sphere(0.1),
+    Box((0.2, 0.1, 0.4)),
+    Cylinder(0.1, 0.5),
+    Capsule(0.05, 0.4),
+    Cone(0.2, 0.3),
+    Halfspace(),
+)
+
+
+def robot(name="arm7", tip="tool"):
+    return Kinematics(read_urdf(packaged_urdf(name), tip))
+
+
+def obstacle(shape, position, name="o", influence=0.4):
+    turn = np.array([0.3, -0.2, 0.5, 0.7])
+    place = Placement(tuple(position), tuple(turn / np.linalg.norm(turn)))
+    return Obstacle(name, (Solid(shape),), place, 0.02, influence)
+
+
+def scene(rng, count):
+    return [
+        obstacle(SHAPES[k % len(SHAPES)], rng.uniform(-1.0, 1.0, 3) - [0, 0, 1.5 * (k % 7 == 6)], f"o{k}")
+        for k in range(count)
+    ]
+
+
+def test_sphere_beside_a_planar_arm():
+    arm = robot("planar3")
+    found = Distances(arm, watched_pairs(arm, [obstacle(Sphere(0.1), (0.3, 5.0, 0.0))], None))
+    near = found.of(np.zeros(3), np.arange(len(found.pairs)))
+    # The arm lies along x; the shape that is beside the sphere is as thick as its first link.
+    (first,) = (p for p, pair in enumerate(found.pairs) if pair.link == found.pairs[0].link)
+    shape = found.pairs[first].solid.shape
+    half = shape.size[1] / 2 if isinstance(shape, Box) else shape.radius
+    assert near.distance[first] == pytest.approx(5.0 - 0.1 - half, abs=1e-9)
+    assert near.away[first] == pytest.approx([0.0, -1.0, 0.0], abs=1e-6)
+    assert near.on_other[first] == pytest.approx([0.3, 4.9, 0.0], abs=1e-6)
+
+
+def test_depth_where_the_search_gives_up_at_its_usual_tolerance():
+    """A cylinder of the forearm in the edge of a box: at this very posture coal had no result."""
+    q = [-2.4287964579505164, -0.9519372923291445, 1.831162022686923, 1.3910115738222122]
+    q = np.array([*q, -0.49555565269233254, -0.5678150055792147, 1.3788828249181506])
+    arm = robot()
+    frame = Obstacle("top", (Solid(Box((0.03, 1.1, 0.25))),), Placement((0.42, 0.0, 0.695)), 0.02, 0.2)
+    found = Distances(arm, watched_pairs(arm, [frame], None))
+    every = np.arange(len(found.pairs))
+    here = found.of(q, every)
+    around = [found.of(q + step * np.eye(7)[k], every) for k in range(7) for step in (1e-6, -1e-6)]
+    assert -0.01 < here.distance.min() < -0.005
+    np.testing.assert_allclose(here.distance, np.mean([near.distance for near in around], axis=0), atol=5e-6)
+    np.testing.assert_allclose(np.linalg.norm(here.away, axis=1), 1.0, atol=1e-9)
+    # What is found next does not depend on it.
+    other = q + 0.01
+    np.testing.assert_array_equal(
+        found.of(other, every).distance, Distances(arm, found.pairs).of(other, every).distance
+    )
+
+
+@pytest.mark.req("TRF-13")
+@pytest.mark.parametrize("name", ["arm7", "koch11", "rail6"])
+@pytest.mark.parametrize("seed", range(4))
+def test_rates_against_finite_differences(name, seed):
+    print("seed", seed)
+    rng = np.random.default_rng(seed)
+    arm = robot(name, {"arm7": "tool", "koch11": "tcp"}.get(name))
+    size = arm.description.reach
+    obstacles = [
+        obstacle(shape, rng.uniform(-0.7, 0.7, 3) * size, f"o{k}") for k, shape in enumerate(SHAPES[:-1])
+    ]
+    found = Distances(arm, watched_pairs(arm, obstacles, None))
+    q = rng.uniform(-1.0, 1.0, arm.joints)
+    near = found.of(q, np.arange(len(found.pairs)))
+    rates = np.einsum("pi,pij->pj", near.away, found.jacobians(q, near))
+    h, apart = 1e-5, near.distance > 1e-3
+    for joint in range(arm.joints):
+        step = h * np.eye(arm.joints)[joint]
+        there, back = (found.of(q + sign * step, near.pairs).distance for sign in (1, -1))
+        slope = (there - back) / (2 * h)
+        # Where the nearest feature of a shape changes within h the two one-sided slopes differ.
+        smooth = np.abs(there + back - 2 * near.distance) / h < 1e-3 * size
+        assert np.max(np.abs(slope - rates[:, joint])[apart & smooth]) < 2e-4 * size
+        assert np.sum(smooth & apart) > 0.8 * np.sum(apart)
+
+
+@pytest.mark.parametrize("name", ["arm7", "koch11", "rail6"])
+def test_looking_again_only_where_needed_changes_nothing(name):
+    rng = np.random.default_rng(5)
+    arm = robot(name, {"arm7": "tool", "koch11": "tcp"}.get(name))
+    links = tuple(arm.description.solids)
+    watched = LinkClearance(tuple((a, b) for k, a in enumerate(links) for b in links[k + 2 :]), 0.01, 0.1)
+    pairs = watched_pairs(arm, scene(rng, 21), watched)
+    kept, fresh = Distances(arm, pairs), Distances(arm, pairs)
+    q = rng.uniform(-1.0, 1.0, arm.joints)
+    seen = 0
+    for k in range(300):
+        # Still, small steps, jumps, and single joints.
+        size = (0.0, 1e-16, 0.003, 0.05, 1.5)[rng.integers(5)]
+        q = q + size * rng.normal(size=arm.joints) * (rng.random(arm.joints) < 0.7)
+        near = kept.near(q)
+        every = fresh.of(q, np.arange(len(pairs)))
+        expected = np.flatnonzero(every.distance < fresh.influence)
+        assert np.array_equal(near.pairs, expected), k
+        assert np.array_equal(near.distance, every.distance[expected])
+        seen += len(expected)
+    assert seen > 100
+
+
+DEEP = (
+    (Cylinder(0.05, 0.18), Box((0.2804311556752078, 0.17765279263391587, 0.36825674408640763))),
+    (Cylinder(0.06, 0.2), Cone(0.09820835125938107, 0.1562421154846486)),
+    (Cylinder(0.05, 0.11), Cylinder(0.04930882882831255, 0.7550724705060567)),
+)
+
+
+@pytest.mark.parametrize("shapes", [*DEEP, (Cylinder(0.05, 0.2), Halfspace())])
+def test_solids_deep_inside_each_other_have_distances(shapes):
+    # The search of the collision library ends at -1.8e308, or deeper than both solids are, now and then.
+    rng = np.random.default_rng(7)
+    link, other = shapes
+    arm = robot("planar3")
+    name = next(name for name in arm.description.solids if arm.body_of(name)[0] > 0)
+    for _ in range(300):
+        turn = rng.normal(size=4)
+        place = Placement(tuple(0.05 * rng.normal(size=3)), tuple(turn / np.linalg.norm(turn)))
+        body = Solid(link, place)
+        around = Obstacle("o", (Solid(other),), Placement((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)), 0.01, 0.1)
+        found = Distances(arm, [WatchedPair(name, body, "o", around.solids[0], 0.01, 0.1, around)])
+        near = found.of(np.zeros(3), np.arange(1))
+        largest = bounding_radius(link) + min(bounding_radius(other), 1.0)
+        assert -largest - 1e-12 <= near.distance[0] < 0.5
+        for values in (near.away, near.on_link, near.on_other):
+            assert np.all(np.abs(values) < 2.0)
+        assert np.linalg.norm(near.away[0]) == pytest.approx(1.0, abs=1e-6)
+        assert np.all(np.isfinite(found.jacobians(np.zeros(3), near)))
