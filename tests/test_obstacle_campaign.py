@@ -73,7 +73,7 @@ def turns(side: np.ndarray) -> int:
     """Times that the joint which does so most turns its acceleration round.
 
     A joint that starts, gives way, comes back and stops does so a few times, whatever the tick; one that
-    oscillates does it over and over. Drawn motions without obstacles do it up to 5 times.
+    oscillates does it over and over.
     """
     most = 0
     for column in side.T:

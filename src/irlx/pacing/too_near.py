@@ -23,8 +23,9 @@ def told_pair(pair: WatchedPair) -> str:
 
 
 def apart(distance: float) -> str:
-    """A distance in words, mm; of solids that overlap how deep."""
-    return f"{distance * 1e3:.4g} mm"
+    """A distance in words, mm; below 0 solids overlap."""
+    overlap = " (they overlap)" if distance < 0.0 else ""
+    return f"{distance * 1e3:.4g} mm{overlap}"
 
 
 def told(clearance: Clearance, found: TooNear) -> dict[str, Any]:
