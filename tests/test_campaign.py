@@ -36,6 +36,8 @@ def write_program(folder: Path, rng: np.random.Generator) -> None:
                 'model = "koch11"',
                 "[robot.limits]",
                 *limits,
+                "[robot.self_collision]",
+                "active = false",
                 "[motion]",
                 f"tick_ms = {tick}",
                 f"speed = {number(rng.uniform(100, 1500))}",

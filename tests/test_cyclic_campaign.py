@@ -37,6 +37,7 @@ def panda_run(folder: Path, body: str, limits: str, tick: float) -> irlx.Run:
     start = ", ".join(repr(float(value)) for value in np.degrees(machine("panda").start))
     (folder / "p.toml").write_text(
         f'[robot]\nmodel = "panda"\nstart = [{start}]\n[robot.limits]\n{limits}'
+        "[robot.self_collision]\nactive = false\n"
         f"[motion]\ntick_ms = {tick!r}\nspeed = 250\nacc = 1500\n",
         encoding="utf-8",
     )

@@ -110,7 +110,7 @@ class Case:
         speed, speed_ori = self.law
         (folder / "drawn.toml").write_text(
             f'[robot]\nmodel = "{self.name}"\nstart = [{join(self.start * units)}]\n'
-            f"[robot.limits]\n{self.limits}"
+            f"[robot.limits]\n{self.limits}[robot.self_collision]\nactive = false\n"
             f"[motion]\ntick_ms = {tick!r}\nspeed = {speed!r}\nspeed_ori = {speed_ori!r}\n",
             encoding="utf-8",
         )

@@ -89,6 +89,7 @@ def cell_text(name: str, drawn: Drawn, tick: float, limits: dict[str, list]) -> 
         "[robot.limits]",
     ]
     lines += [f"{kind} = [{', '.join(entries)}]" for kind, entries in limits.items()]
+    lines += ["[robot.self_collision]", "active = false"]
     lines += ["[motion]", f"tick_ms = {tick!r}", f"speed = {speed!r}", f"acc = {acc!r}"]
     return "\n".join([*lines, f"speed_ori = {speed_ori!r}", f"acc_ori = {acc_ori!r}"])
 

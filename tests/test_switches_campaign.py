@@ -104,6 +104,7 @@ class Drawing:
         return (
             f'[robot]\nmodel = "{self.name}"\nstart = [{join(self.robot.start * self.units)}]\n'
             f"[robot.limits]\nspeed = [{join(self.speed * self.units)}]\nacceleration = {acceleration}\n"
+            "[robot.self_collision]\nactive = false\n"
             f"[motion]\ntick_ms = {self.tick!r}\nspeed = {150.0 * self.size!r}\nacc = {800.0 * self.size!r}\n"
             "speed_ori = 60.0\nacc_ori = 240.0\n"
         )

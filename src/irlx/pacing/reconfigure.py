@@ -119,7 +119,7 @@ def _planned(
     """
     found = _on_curve(model, flow.points, ticking)
     for widening in _WIDENINGS:
-        if not isinstance(found, Refusal):
+        if not isinstance(found, Refusal) or found.near is not None:
             break
         found = _on_curve(model, flow.further_inside(widening), ticking)
     if isinstance(found, Refusal):

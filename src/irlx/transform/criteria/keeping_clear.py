@@ -26,6 +26,9 @@ _PER_TIME = 0.05
 _FASTEST = 1.0
 """Joint speed (rad/s, m/s) that a push may ask for at the programmed pace."""
 
+_SETTLING = 0.25
+"""Part of the way out of its influence that a pair is pushed in 50 ms at most."""
+
 _NEAREST = 0.02
 _RAMP = 0.25
 _FALL = 4
@@ -91,7 +94,9 @@ class KeepingClear(Term):
         weight = rise * (away.min() / away) ** _FALL
         weight = OBSTACLE_WEIGHT * _SQUARE_MILLIMETRES * weight / max(float(weight.sum()), 1.0)
         points = distances.jacobians(q, near)
-        pulls = (weight * self._pace(q, near.away, points, _STEP / away))[:, None] * near.away
+        # What leads out of the influence must not be thrown out of it, to fall back a tick later.
+        alpha = np.minimum(_STEP / away, _SETTLING * np.maximum(influence - away, 0.0))
+        pulls = (weight * self._pace(q, near.away, points, alpha))[:, None] * near.away
         linear = -pulls.reshape(-1).dot(points.reshape(-1, q.size))
         rows = (np.sqrt(weight)[:, None, None] * points).reshape(-1, q.size)
         return linear, rows.T.dot(rows), float(rise.max())
