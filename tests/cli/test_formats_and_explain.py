@@ -110,7 +110,7 @@ def test_ignored_warnings_of_a_run(inside, folder):
 def test_ignored_warnings_of_the_motion(inside, folder):
     """Quiet in a run and in a dry run alike; told in both without the comment."""
     (folder / "m.toml").write_text('[robot]\nmodel = "arm7"\n')
-    moves = "MOVE LIN (441, 200, 324) C_CP := 10;{}\n  MOVE LIN (441, 240, 324);\n"
+    moves = "MOVE LIN (441, 200, 324) C_CP := 10;{}\n  WAIT 0.1 SEC;\n"
     for comment in ("", "  { irlx: ignore IRL432 }"):
         (folder / "m.irl").write_text(f"PROGRAM m;\nBEGIN\n  {moves.format(comment)}ENDPROGRAM;\n")
         told = [inside("check", "m.irl", "--motion").stderr, inside("run", "m.irl").stderr]
