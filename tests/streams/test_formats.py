@@ -11,7 +11,7 @@ from irlx.streams import KNOWN_ENDINGS, JointStream, StreamError, read_stream, w
 from irlx.streams.atomic import AtomicFile, check_writable
 from irlx.streams.header_plain import header_to_plain
 
-WITH_BLOCKS = (".irdata", ".npz")
+WITH_BLOCKS = (".irdata", ".npz", ".jsonl")
 
 
 def awkward(kit) -> JointStream:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
+import shutil
 from itertools import count
 from pathlib import Path
 from types import TracebackType
@@ -12,6 +14,7 @@ from typing import IO
 from irlx.streams.error import cannot_write
 
 _NUMBERS = count(1)
+_LONGEST_ENDING = 16
 
 
 class AtomicFile:
@@ -30,8 +33,10 @@ class AtomicFile:
                 raise IsADirectoryError(None, "it is a folder")
             if self._target.exists() and not self._target.is_file():
                 raise ValueError("it is not a regular file")
-            # Short and without the target's name, whose length may already be all that is allowed.
-            self._temporary = self._target.parent / f".irlx-{os.getpid()}-{next(_NUMBERS)}.part"
+            # Short and without the target's name, whose length may already be all that is allowed; with its
+            # ending, by which what a killed process has left can be read.
+            name = f".irlx-{os.getpid()}-{next(_NUMBERS)}.part{self._target.suffix[:_LONGEST_ENDING]}"
+            self._temporary = self._target.parent / name
             self.handle: IO[bytes] = self._temporary.open("xb")
         except (OSError, ValueError) as cause:
             raise cannot_write(self.path, cause) from cause
@@ -44,13 +49,18 @@ class AtomicFile:
             self.discard()
             raise cannot_write(self.path, cause) from cause
 
-    def commit(self) -> None:
-        """Bring everything to disk, then rename; nobody ever sees a half-written `path`."""
+    def commit(self, name: str | os.PathLike[str] | None = None) -> None:
+        """Bring everything to disk, then rename, to another `name` than `path` where one is given.
+
+        Nobody ever sees a half-written file, unless that name is on another file system.
+        """
         try:
             self.handle.flush()
             os.fsync(self.handle.fileno())
             self.handle.close()
-            self._temporary.replace(self._target)
+            if name is not None:
+                self._target = Path(os.path.realpath(name))
+            self._put_in_place()
         except (OSError, ValueError) as cause:
             self.discard()
             raise cannot_write(self.path, cause) from cause
@@ -63,6 +73,14 @@ class AtomicFile:
             self.handle.close()
         with contextlib.suppress(OSError):
             self._temporary.unlink(missing_ok=True)
+
+    def _put_in_place(self) -> None:
+        try:
+            self._temporary.replace(self._target)
+        except OSError as cause:
+            if cause.errno != errno.EXDEV:
+                raise
+            shutil.move(self._temporary, self._target)
 
     def _sync_folder(self) -> None:
         """Make the rename durable where the file system lets one sync a folder."""

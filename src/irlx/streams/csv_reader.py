@@ -1,4 +1,4 @@
-"""Strict reader of the CSV that `csv_format` writes, some rows at a time."""
+"""Strict reader of the CSV that `csv_writer` writes, some rows at a time."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import IO, Any
 import numpy as np
 
 from irlx.diagnostics import Place, report
-from irlx.streams.csv_format import column_line, comment
+from irlx.streams.csv_writer import column_line, comment
 from irlx.streams.error import StreamError, broken, open_to_read
 from irlx.streams.header_plain import PlainFormError, VersionError, header_from_plain
 from irlx.streams.irdata.numbers import counts_of, floats_of
@@ -28,7 +28,7 @@ _SPLITS = np.arange(1, 4)
 
 
 def read_csv(path: str | os.PathLike[str]) -> JointStream:
-    """Stream of a CSV file that `write_csv` wrote: header and samples, without blocks.
+    """Stream of a CSV file that `CsvWriter` wrote: header and samples, without blocks.
 
     Raises what `scan_csv` raises.
     """
@@ -36,7 +36,7 @@ def read_csv(path: str | os.PathLike[str]) -> JointStream:
 
 
 def scan_csv(path: str | os.PathLike[str]) -> Iterator[ScanItem]:
-    """Scan of a CSV file that `write_csv` wrote, without blocks, about 1 MB of text at a time.
+    """Scan of a CSV file that `CsvWriter` wrote, without blocks, about 1 MB of text at a time.
 
     A file without its closing comment was cut: it is read up to its last whole line, the end being
     incomplete. Raises StreamError with the codes of `scan_irdata` once the rows before the damage are
@@ -220,7 +220,7 @@ def _header_of(path: Path, comments: list[bytes]) -> StreamHeader:
 
 
 def _plain_table(text: bytes, columns: int) -> Floats:
-    """Numbers (N, columns) of whole lines as `write_csv` makes them; raises ValueError for others."""
+    """Numbers (N, columns) of whole lines as `CsvWriter` makes them; raises ValueError for others."""
     bytes_ = np.frombuffer(text, dtype=np.uint8)
     stops = np.flatnonzero((bytes_ == _COMMA) | (bytes_ == _NEWLINE))
     if len(stops) % columns:

@@ -8,14 +8,17 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from irlx.diagnostics import report
-from irlx.streams.csv_format import write_csv
 from irlx.streams.csv_reader import scan_csv
+from irlx.streams.csv_writer import CsvWriter
 from irlx.streams.error import StreamError
 from irlx.streams.irdata import IrdataWriter, scan_irdata
-from irlx.streams.joint_stream import JointStream
-from irlx.streams.npz_format import write_npz
+from irlx.streams.joint_stream import BlockRecord, JointStream, StreamHeader
+from irlx.streams.jsonl_reader import scan_jsonl
+from irlx.streams.jsonl_writer import JsonlWriter
 from irlx.streams.npz_reader import scan_npz
-from irlx.streams.scan import ScanItem, collect
+from irlx.streams.npz_writer import NpzWriter
+from irlx.streams.scan import RowBatch, ScanItem, StreamEnd, collect, in_order
+from irlx.streams.writer import StreamWriter
 
 
 @dataclass(frozen=True)
@@ -24,33 +27,18 @@ class StreamFormat:
 
     ending: str
     title: str
-    write: Callable[[JointStream, Path], None]
+    writer: Callable[[Path, StreamHeader], StreamWriter]
     scan: Callable[[Path], Iterator[ScanItem]]
     carries_blocks: bool
-
-
-def write_irdata(stream: JointStream, path: str | os.PathLike[str]) -> None:
-    """Write a whole stream as IRDATA-like records, each block after the sample of its tick."""
-    with IrdataWriter(path, stream.header) as writer:
-        done = 0
-        for record in stream.records:
-            upto = int(stream.ticks.searchsorted(record.tick, side="right"))
-            if upto > done:
-                part = slice(done, upto)
-                writer.samples(stream.ticks[part], stream.q[part], stream.block[part], stream.tool[part])
-                done = upto
-            writer.block(record)
-        rest = slice(done, None)
-        writer.samples(stream.ticks[rest], stream.q[rest], stream.block[rest], stream.tool[rest])
-        writer.close(stream.complete)
 
 
 FORMATS = {
     known.ending: known
     for known in (
-        StreamFormat(".irdata", "IRDATA-like records", write_irdata, scan_irdata, carries_blocks=True),
-        StreamFormat(".csv", "CSV", write_csv, scan_csv, carries_blocks=False),
-        StreamFormat(".npz", "NPZ", write_npz, scan_npz, carries_blocks=True),
+        StreamFormat(".irdata", "IRDATA-like records", IrdataWriter, scan_irdata, carries_blocks=True),
+        StreamFormat(".csv", "CSV", CsvWriter, scan_csv, carries_blocks=False),
+        StreamFormat(".npz", "NPZ", NpzWriter, scan_npz, carries_blocks=True),
+        StreamFormat(".jsonl", "JSON Lines", JsonlWriter, scan_jsonl, carries_blocks=True),
     )
 }
 """Every format by its ending, lower case with the dot."""
@@ -64,7 +52,27 @@ def write_stream(stream: JointStream, path: str | os.PathLike[str]) -> None:
 
     Raises StreamError: IRL004 for an unknown ending, IRL003 where the file cannot be written.
     """
-    format_of(path, "IRL004").write(stream, Path(path))
+    with open_writer(path, stream.header) as writer:
+        for item in in_order(stream):
+            put(item, writer)
+
+
+def open_writer(path: str | os.PathLike[str], header: StreamHeader) -> StreamWriter:
+    """A writer in the format of the path's ending, to which a stream is given as it comes.
+
+    Raises StreamError: IRL004 for an unknown ending, IRL003 where no file can be written there.
+    """
+    return format_of(path, "IRL004").writer(Path(path), header)
+
+
+def put(item: ScanItem, writer: StreamWriter) -> None:
+    """Give an item of a scan to a writer, which has the header; the end closes it."""
+    if isinstance(item, BlockRecord):
+        writer.block(item)
+    elif isinstance(item, RowBatch):
+        writer.samples(item.ticks, item.q, item.block, item.tool)
+    elif isinstance(item, StreamEnd):
+        writer.close(item.complete)
 
 
 def read_stream(path: str | os.PathLike[str]) -> JointStream:

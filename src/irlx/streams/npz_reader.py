@@ -34,7 +34,7 @@ _DAMAGE = (zipfile.BadZipFile, zlib.error, KeyError, ValueError, EOFError, NotIm
 
 
 def read_npz(path: str | os.PathLike[str]) -> JointStream:
-    """Stream of an NPZ file that `write_npz` wrote, blocks included.
+    """Stream of an NPZ file that `NpzWriter` wrote, blocks included.
 
     t, qd and qdd of the stream follow from the rest. Raises what `scan_npz` raises.
     """
@@ -42,7 +42,7 @@ def read_npz(path: str | os.PathLike[str]) -> JointStream:
 
 
 def scan_npz(path: str | os.PathLike[str]) -> Iterator[ScanItem]:
-    """Scan of an NPZ file that `write_npz` wrote: all block records, then the rows in portions.
+    """Scan of an NPZ file that `NpzWriter` wrote: all block records, then the rows in portions.
 
     Raises StreamError once the rows before the damage are out: IRL001, IRL002, IRL007 where the file
     cannot be read, IRL701 where it is damaged, IRL703 for ticks that do not rise, IRL706 for another

@@ -58,10 +58,27 @@ def scan_of(stream: JointStream) -> Iterator[ScanItem]:
     """A stream in memory as a scan, like that of a file: header, all records, rows in portions, the end."""
     yield stream.header
     yield from stream.records
-    for start in range(0, len(stream.ticks), _PORTION):
-        part = slice(start, start + _PORTION)
-        yield RowBatch(stream.ticks[part], stream.q[part], stream.block[part], stream.tool[part])
+    yield from _rows_of(stream, 0, len(stream.ticks))
     yield StreamEnd(stream.complete)
+
+
+def in_order(stream: JointStream) -> Iterator[ScanItem]:
+    """A stream in memory as a scan in which each block record stands after the row of its tick."""
+    yield stream.header
+    done = 0
+    for record in stream.records:
+        upto = int(stream.ticks.searchsorted(record.tick, side="right"))
+        yield from _rows_of(stream, done, upto)
+        done = max(done, upto)
+        yield record
+    yield from _rows_of(stream, done, len(stream.ticks))
+    yield StreamEnd(stream.complete)
+
+
+def _rows_of(stream: JointStream, begin: int, end: int) -> Iterator[RowBatch]:
+    for start in range(begin, end, _PORTION):
+        part = slice(start, min(start + _PORTION, end))
+        yield RowBatch(stream.ticks[part], stream.q[part], stream.block[part], stream.tool[part])
 
 
 def collect(scan: Iterator[ScanItem]) -> JointStream:

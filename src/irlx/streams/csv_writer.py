@@ -1,0 +1,81 @@
+"""CSV: provenance in comment lines, one line of column names, one line a tick, and a closing comment.
+
+Carries the samples and the header, not the blocks. Strings and lists in comments are JSON.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import os
+from typing import Any
+
+import numpy as np
+
+from irlx.streams.header_plain import header_to_plain
+from irlx.streams.irdata.digits import FIELD, fill_fields
+from irlx.streams.joint_stream import BlockRecord, StreamHeader
+from irlx.streams.rates import Rates
+from irlx.streams.scan import RowBatch, StatedRates
+from irlx.streams.text_writer import TextWriter
+
+_TOOL = ("x", "y", "z", "qx", "qy", "qz", "qw")
+
+
+class CsvWriter(TextWriter):
+    """Writes the samples of one stream as CSV, UTF-8, numbers so that they read back to the same bits.
+
+    Columns: tick, t (s), block id, q, qd and qdd of every joint (rad or m, per s, per s2), tool pose. See
+    `StreamWriter`.
+    """
+
+    def __init__(self, path: str | os.PathLike[str], header: StreamHeader) -> None:
+        super().__init__(path, header)
+        self._rates = Rates(header)
+        self._write(_head(header))
+
+    def _put_block(self, record: BlockRecord) -> None:
+        """CSV has no blocks."""
+
+    def _put_rows(self, batch: RowBatch) -> None:
+        self._write(_lines(batch, self._rates.of(batch.ticks, batch.q)))
+
+    def _put_end(self, complete: bool) -> None:
+        end = {"samples": self.rows, "complete": complete, "sha256": self._digest.hexdigest()}
+        self._write(comment("end", end))
+
+
+def comment(key: str, value: Any) -> bytes:
+    """Comment line of one entry of a header, or of the end; the value as JSON."""
+    return f"# {key}: {json.dumps(value)}\n".encode()
+
+
+def _head(header: StreamHeader) -> bytes:
+    lines = [comment(key, value) for key, value in header_to_plain(header).items()]
+    return b"".join([*lines, column_line(header)])
+
+
+def column_line(header: StreamHeader) -> bytes:
+    """Names of the columns; line breaks and other control characters in joint names become blanks.
+
+    The comment lines have the names as they are.
+    """
+    names = ["".join(c if c.isprintable() else " " for c in name) for name in header.joint_names]
+    joints = [f"{prefix}_{name}" for prefix in ("q", "qd", "qdd") for name in names]
+    line = io.StringIO()
+    columns = ["tick", "t", "block", *joints, *(f"tool_{part}" for part in _TOOL)]
+    csv.writer(line, lineterminator="\n").writerow(columns)
+    return line.getvalue().encode("utf-8", "backslashreplace")
+
+
+def _lines(batch: RowBatch, rates: StatedRates) -> bytes:
+    """Lines of rows, numbers with 17 digits, as in IRDATA-like records."""
+    values = np.concatenate((batch.q, rates.qd, rates.qdd, batch.tool), axis=1)
+    lines = np.empty(len(values), dtype=[("numbers", FIELD, (values.shape[1],)), ("end", "S1")])
+    fill_fields(lines["numbers"], values)
+    lines["end"] = b"\n"
+    tails = lines.view(f"S{lines.dtype.itemsize}").tolist()
+    heads = zip(batch.ticks.tolist(), rates.t.tolist(), batch.block.tolist(), tails, strict=True)
+    # The fields are padded to one width, which a CSV has no use for.
+    return b"".join([b"%d,%a,%d%b" % head for head in heads]).translate(None, b" ")
