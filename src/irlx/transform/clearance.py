@@ -7,10 +7,15 @@ A pair that is d0 away at the start of a tick of dt may lose the part dt/tau of 
 S the whole step of the tick. Distances are linearised at the iterates of Newton's method, until these hardly
 move any more: a distance bends, but little over so short a way, and a row that stays the same lets the steps
 settle.
+
+From an obstacle that somebody sees while the program runs (`follow`) a pair inside its margin has to win the
+part dt/tau of what it lacks; one outside it goes along with what the obstacle comes nearer in the tick, but for
+the part dt/tau_seen of what is left above the margin.
 """
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,6 +28,10 @@ Numbers = NDArray[np.intp]
 
 APPROACH_TIME = 0.1
 """Time constant tau (s) with which a pair comes near its margin."""
+
+SEEN_TIME = 0.5
+"""Time constant tau_seen (s) with which a pair gives way to an obstacle that is seen coming: its speed is
+not known before, and joints need time to take it on."""
 
 RESERVE = 2e-6
 """Distance (m) that ticks keep beside a margin: room for what `ALLOWANCE` lets them lose of it."""
@@ -85,6 +94,12 @@ class Clearance:
     def watched_tick(self, q: Array, dt: float, elapsed: float) -> TickClearance:
         """The same where something may come near, however far it is at the start of the tick."""
         return TickClearance(self.distances, q, dt, RESERVE, self.begin + elapsed)
+
+    def following_tick(self, q: Array, base: Array, dt: float) -> TickClearance:
+        """The floors of the first tick of dt s, in which the plan moves the joints by `base` (n,)."""
+        tick = TickClearance(self.distances, q, dt, RESERVE, self.begin)
+        tick.follow(base)
+        return tick
 
     def nears(self, q: Array, elapsed: float) -> bool:
         """Whether a tick that began without floors must not end at q (n,) unseen."""
@@ -162,9 +177,27 @@ class TickClearance:
         least = self._least[self.near.pairs]
         share = min(dt / APPROACH_TIME, 1.0)
         self.floors = self.near.distance - share * np.maximum(self.near.distance - least, 0.0)
+        self._dt = dt
         self._looked_from = np.zeros_like(q)
         self._gradient: Array | None = None
         self._looks = 0
+
+    def follow(self, base: Array) -> None:
+        """Raise the floors of obstacles that are seen; `base` (n,) is what the joints do of themselves."""
+        pairs, before = self.near.pairs, self.near.distance
+        seen = self._distances.seen[pairs]
+        if not np.any(seen):
+            return
+        self._distances.at_time(self._end)
+        here = self._distances.of(self._q, pairs).distance
+        there = self._distances.of(self._q + base, pairs).distance
+        room = before - self._least[pairs]
+        coming = np.maximum(before - here, 0.0)
+        left = room * min(self._dt / SEEN_TIME, 1.0)
+        slower = np.minimum(there + np.maximum(coming - left, 0.0), before - left)
+        leaving = before - room * min(self._dt / APPROACH_TIME, 1.0)
+        raised = np.where(room < 0.0, leaving, slower)
+        self.floors = np.where(seen, np.maximum(self.floors, raised), self.floors)
 
     def rows(self, whole: Array) -> SideRows:
         """Rows of the Newton step at the iterate `whole` (n,), the step since the start of the tick."""
@@ -193,6 +226,20 @@ class TickClearance:
         self.near = distances.of(self._q, pairs)
         self._gradient = None
         return False
+
+    def again(self) -> TickClearance:
+        """The same tick, not looked at yet but for its start."""
+        return self.without(np.zeros(0, dtype=np.intp))
+
+    def without(self, pairs: Numbers) -> TickClearance:
+        """The same tick in which these pairs (by number) may come as near as they like."""
+        found = copy(self)
+        found._least = self._least.copy()
+        found._least[pairs] = -np.inf
+        stay = ~np.isin(self.near.pairs, pairs)
+        found.near, found.floors = self.near.chosen(stay), self.floors[stay]
+        found._gradient, found._looks = None, 0
+        return found
 
     @property
     def exhausted(self) -> bool:
