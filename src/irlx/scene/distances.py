@@ -84,7 +84,7 @@ class Distances:
         self._bodies: list[int] = []
         self._radii: list[float] = []
         self._sightings = sightings
-        self._count = 0
+        self._count, self._before = 0, False
         self._placed: list[_Placed] = []
         self._speeds: list[float] = []
         self._first = np.array([self._add_of_link(p.link, p.solid) for p in pairs], dtype=np.intp)
@@ -107,15 +107,19 @@ class Distances:
         self._fastest = float(np.max(self._rates, initial=0.0))
         self.at_time(0.0)
 
-    def at_time(self, time: float) -> None:
-        """Put the obstacles that move or are seen where they are at a `time` (s) of the run."""
+    def at_time(self, time: float, before: bool = False) -> None:
+        """Put obstacles that move where they are at a `time` (s) of the run, and those seen where they are.
+
+        `before`: those that are seen where they were before the tick that goes on.
+        """
         seen = self._sightings
         count = 0 if seen is None else seen.count
-        if not self._placed or (time == self._time and count == self._count):
+        if not self._placed or (time, count, before) == (self._time, self._count, self._before):
             return
-        self._time, self._count = time, count
+        self._time, self._count, self._before = time, count, before
         for placed in self._placed:
-            pose = placed.way.pose(time) if seen is None else seen.pose(placed.name, time, placed.way)
+            way, name = placed.way, placed.name
+            pose = way.pose(time) if seen is None else seen.pose(name, time, way, before)
             if pose is placed.pose:
                 continue
             if seen is not None and seen.known(placed.name):

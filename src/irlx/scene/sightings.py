@@ -1,8 +1,6 @@
-"""Where obstacles have been seen while a program runs."""
+"""Where obstacles are seen while a program runs."""
 
 from __future__ import annotations
-
-from typing import NamedTuple
 
 import numpy as np
 import pinocchio as pin
@@ -10,45 +8,39 @@ import pinocchio as pin
 from irlx.scene.trajectory import Way
 
 
-class _Seen(NamedTuple):
-    """Where an obstacle is from the time `since` (s) on, and what held before."""
-
-    pose: pin.SE3
-    since: float
-    before: pin.SE3 | None
-
-
 class Sightings:
-    """The last poses of obstacles that somebody sees, by name whatever its case.
+    """The last poses of obstacles that somebody sees, by name whatever its case, tick by tick.
 
-    A sighting holds from its time on until the next one; of the time before it the last sighting alone is
-    kept. `count` grows with each.
+    An obstacle stays where it was seen last; of the time before this tick its last pose alone is kept.
+    `count` grows with each change.
     """
 
     def __init__(self) -> None:
-        self._seen: dict[str, _Seen] = {}
+        self._now: dict[str, pin.SE3] = {}
+        self._before: dict[str, pin.SE3] = {}
         self.count = 0
 
-    def place(self, name: str, pose: pin.SE3, since: float) -> None:
-        """Note where the frame of an obstacle is in the world from the time `since` (s) of the run on."""
-        key = name.casefold()
-        last = self._seen.get(key)
-        if last is not None and np.array_equal(last.pose.homogeneous, pose.homogeneous):
-            # It rests: there is nothing before it that differs.
-            self._seen[key] = last._replace(before=last.pose)
-            return
-        self._seen[key] = _Seen(pose, since, None if last is None else last.pose)
-        self.count += 1
+    def begin_tick(self) -> None:
+        """Begin a tick: what is seen now was before it."""
+        if self._before != self._now:
+            self._before = dict(self._now)
+            self.count += 1
+
+    def place(self, name: str, pose: pin.SE3) -> None:
+        """Note where the frame of an obstacle is in the world from this tick on."""
+        last = self._now.get(name.casefold())
+        if last is None or not np.array_equal(last.homogeneous, pose.homogeneous):
+            self._now[name.casefold()] = pose
+            self.count += 1
 
     def known(self, name: str) -> bool:
         """Whether an obstacle has been seen at all."""
-        return name.casefold() in self._seen
+        return name.casefold() in self._now
 
-    def pose(self, name: str, time: float, own: Way) -> pin.SE3:
-        """Pose of an obstacle's frame at a time (s): as it is seen, before that its `own` way."""
-        seen = self._seen.get(name.casefold())
-        if seen is None:
-            return own.pose(time)
-        if time >= seen.since:
-            return seen.pose
-        return own.pose(time) if seen.before is None else seen.before
+    def pose(self, name: str, time: float, own: Way, before: bool = False) -> pin.SE3:
+        """Pose of an obstacle's frame as it is seen, or was `before` this tick.
+
+        Of one that has not been seen, what its `own` way says of a time (s).
+        """
+        seen = (self._before if before else self._now).get(name.casefold())
+        return own.pose(time) if seen is None else seen

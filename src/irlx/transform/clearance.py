@@ -9,8 +9,8 @@ move any more: a distance bends, but little over so short a way, and a row that 
 settle.
 
 From an obstacle that somebody sees while the program runs (`follow`) a pair inside its margin has to win the
-part dt/tau of what it lacks; one outside it goes along with what the obstacle comes nearer in the tick, but for
-the part dt/tau_seen of what is left above the margin.
+part dt/tau of what it lacks; one outside it goes along with what the obstacle comes nearer in the tick, but
+for the part dt/tau_seen of what is left above the margin.
 """
 
 from __future__ import annotations
@@ -97,9 +97,14 @@ class Clearance:
 
     def following_tick(self, q: Array, base: Array, dt: float) -> TickClearance:
         """The floors of the first tick of dt s, in which the plan moves the joints by `base` (n,)."""
-        tick = TickClearance(self.distances, q, dt, RESERVE, self.begin)
+        tick = TickClearance(self.distances, q, dt, RESERVE, self.begin, before=True)
         tick.follow(base)
         return tick
+
+    def begins_far(self, q: Array) -> bool:
+        """Whether all is certainly far from posture q (n,) at the begin, obstacles where they were before."""
+        self.distances.at_time(self.begin, before=True)
+        return self.distances.far(q)
 
     def nears(self, q: Array, elapsed: float) -> bool:
         """Whether a tick that began without floors must not end at q (n,) unseen."""
@@ -167,10 +172,12 @@ class Clearance:
 class TickClearance:
     """Floors (P,) of the pairs of one tick, and the rows that they are at an iterate."""
 
-    def __init__(self, distances: Distances, q: Array, dt: float, reserve: float, time: float) -> None:
+    def __init__(
+        self, distances: Distances, q: Array, dt: float, reserve: float, time: float, before: bool = False
+    ) -> None:
         self._distances = distances
         self._end = time + dt
-        distances.at_time(time)
+        distances.at_time(time, before)
         self._q = q
         self._least = distances.margin + reserve
         self.near = distances.near(q)
@@ -226,6 +233,25 @@ class TickClearance:
         self.near = distances.of(self._q, pairs)
         self._gradient = None
         return False
+
+    def stays_clear(self, whole: Array, further: Array) -> bool:
+        """Whether what is near also stays clear where the step `whole` (n,) goes on by `further` (n,).
+
+        To first order. Pairs inside their margins count where they come nearer still.
+        """
+        if not len(self.near.pairs):
+            return True
+        self._look(whole)
+        assert self._gradient is not None
+        loss = self._gradient @ further
+        left = self.near.distance + loss - self._least[self.near.pairs]
+        return bool(np.all((left >= -ALLOWANCE) | (loss >= 0.0)))
+
+    def at_margins(self) -> TickClearance:
+        """The same tick where all may come as near as their margins at once, or stay as near as they are."""
+        found = self.again()
+        found.floors = np.minimum(found.floors, self._least[self.near.pairs])
+        return found
 
     def again(self) -> TickClearance:
         """The same tick, not looked at yet but for its start."""

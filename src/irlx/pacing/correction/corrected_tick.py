@@ -114,8 +114,7 @@ def corrected_tick(before: Corrected, row: PlannedRow, request: Array, around: S
     clearance, dt = around.clearance, around.limiter.dt
     if clearance is None:
         return _followed(before, row, request, around, None)
-    unseen = clearance.after(0.0).far(before.q)
-    if unseen:
+    if clearance.begins_far(before.q):
         found = _followed(before, row, request, around, None)
         if not clearance.nears(found.q, dt):
             return found
@@ -134,7 +133,7 @@ def _followed(
         return Corrected(row, before.q, np.zeros(row.q.size), before.correction, np.zeros(6))
     bounds = around.limiter.bounds(before.offset, before.speed, row.lowest, row.highest)
     criterion = _criterion(before, row, wanted.correction, around)
-    tick = _Tick(before, row, bounds, criterion, around, keeping)
+    tick = _Tick(before, row, bounds, criterion, around, keeping, pace)
     found = tick.solved(wanted.correction)
     governor = wanted.governor if np.any(wanted.correction != request) else None
     if found is not None:
@@ -250,7 +249,7 @@ def _criterion(before: Corrected, row: PlannedRow, wanted: Array, around: Surrou
 class _Tick:
     """A tick that is being solved: `bounds` of the step of the offset, `criterion` of the posture.
 
-    `keeping` are the floors of what is near.
+    `keeping` are the floors of what is near; with `pace` a correction must also be able to stop before it.
     """
 
     before: Corrected
@@ -259,6 +258,7 @@ class _Tick:
     criterion: Posture
     around: Surroundings
     keeping: TickClearance | None = None
+    pace: Pace | None = None
 
     @property
     def planned_step(self) -> Array:
@@ -281,7 +281,18 @@ class _Tick:
         """The posture of a corrected pose, None where the bounds leave none."""
         seed = self.planned_step + self.before.speed * self.around.limiter.dt
         found = self.around.solver.solve(self.problem(correction), seed, thorough=False)
-        return found if found.solved else None
+        return found if found.solved and self._stops_in_time(found.q, correction) else None
+
+    def _stops_in_time(self, q: Array, correction: Array) -> bool:
+        """Whether a correction (6,) that goes on as it came in this tick can still brake before a margin."""
+        rate = (correction - self.before.correction) / self.around.limiter.dt
+        speed = float(np.linalg.norm(rate))
+        if self.keeping is None or self.pace is None or speed == 0.0:
+            return True
+        able, _ = self.pace.acceleration(-rate / speed)
+        braking = speed / (2.0 * _BRAKING * able) + self.around.limiter.dt
+        further = self.pace.joint_rates @ (rate * braking)
+        return self.keeping.again().stays_clear(q - self.before.q, further)
 
     def reached(
         self, found: TickSolution, correction: Array, governor: Governor | None, refused: bool = False
@@ -314,11 +325,17 @@ class _Tick:
         posture at all.
         """
         governor = TOO_NEAR if np.any(resting != request) else None
+        braking = replace(self, pace=None)
         if np.any(resting != wanted):
-            first = self.solved(resting)
+            first = braking.solved(resting)
             if first is not None:
                 found = self._farthest(resting, wanted) or (first, resting)
                 return self.reached(*found, TOO_NEAR, refused=True)
+        if self.keeping is not None and np.any(resting != self.before.correction):
+            # It brakes as hard as it may, and had been let go so fast that this is enough.
+            first = replace(braking, keeping=self.keeping.at_margins()).solved(resting)
+            if first is not None:
+                return self.reached(first, resting, TOO_NEAR, refused=True)
         return self._giving_way(resting, governor)
 
     def _giving_way(self, correction: Array, governor: Governor | None) -> Corrected | None:
@@ -331,7 +348,7 @@ class _Tick:
         retreat = retreat_of(self.problem(correction), around.kinematics, around.weights, base)
         criterion = Posture(around.weights, self.before.q + base + retreat.step)
         for keeping in (self.keeping.without(retreat.pairs), None):
-            tick = replace(self, criterion=criterion, keeping=keeping)
+            tick = replace(self, criterion=criterion, keeping=keeping, pace=None)
             found = tick.solved(correction)
             if found is not None:
                 return tick.reached(found, correction, governor, refused=governor is not None)

@@ -173,13 +173,13 @@ class Corrector:
         place = self._pacer.locate(block.origin) if block is not None else None
         found = read_placements(self._senses.look(), self._tick + 1, setup.scene, place)
         self.nearness.asked(len(found))
-        # The rows of a tick differ between its begin and its end: half way no rounding matters.
-        since = (self._tick + 0.5) * setup.dt
+        sightings, obstacles = setup.scene.sightings, setup.scene.obstacles
+        sightings.begin_tick()
         for one in found:
-            own = way_of(setup.scene.obstacles[one.name.casefold()])
-            known = setup.scene.sightings.pose(one.name, since, own)
+            own = way_of(obstacles[one.name.casefold()])
+            known = sightings.pose(one.name, (self._tick + 1) * setup.dt, own)
             rotation = known.rotation if one.rotation is None else pin.exp3(one.rotation)
-            setup.scene.sightings.place(one.name, pin.SE3(rotation, one.position), since)
+            sightings.place(one.name, pin.SE3(rotation, one.position))
 
     def _from_now(self, around: Surroundings) -> Surroundings:
         """The same from this tick on."""
