@@ -217,6 +217,22 @@ def test_an_obstacle_that_rests_changes_nothing(tmp_path, answer):
     np.testing.assert_array_equal([one.q for one in found[1:]], np.concatenate(rows))
 
 
+def test_the_arm_goes_back_to_the_plan_once_the_ball_has_gone(tmp_path):
+    path = files(tmp_path, LINE.replace("2 SEC", "3 SEC"))
+
+    def there_and_back(sample):
+        return {"ball": (0.149, 0.0 - 0.15 * abs(sample.t - 3.5), 0.660)}
+
+    found = followed(path, there_and_back)
+    rows = [one.rows.q for one in Execution(prepare(path), planned_share=PLANNED) if one.rows is not None]
+    planned = np.vstack([found.q[:1], *rows])
+    away = np.max(np.abs(found.q - planned), axis=1)
+    assert np.max(away) > 0.05
+    np.testing.assert_array_equal(found.q[-20:], planned[-20:])
+    assert np.min(distances(found)) >= MARGIN - 1e-6
+    assert off_path(found) < 1e-6
+
+
 def test_the_same_ball_gives_the_same_bits(tmp_path):
     path = files(tmp_path, tick=20)
     first, second = (followed(path, coming(0.2)) for _ in range(2))
@@ -330,3 +346,46 @@ def test_what_the_watcher_raises_comes_out_unchanged(tmp_path):
     with pytest.raises(OSError, match="unplugged") as caught:
         list(stream)
     assert caught.value is broken
+
+
+def test_the_example_of_the_reference(tmp_path, monkeypatch, capsys):
+    files(tmp_path)
+    for ending in ("irl", "toml"):
+        (tmp_path / f"ball.{ending}").rename(tmp_path / f"demo.{ending}")
+    text = (Path(__file__).parents[2] / "docs" / "reference" / "interface.md").read_text(encoding="utf-8")
+    code = text.split("### Obstacles that are seen", 1)[1].split("```python\n", 1)[1].split("```", 1)[0]
+    monkeypatch.chdir(tmp_path)
+    found: dict = {}
+    exec(code, found)
+    assert "near_ticks=0" in capsys.readouterr().out
+    assert found["sample"].nearest.other == "Ball"
+    assert found["sample"].nearest.distance > MARGIN
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("robot", ["arm7", "rail6", "koch11", "planar4"])
+def test_balls_at_random_cost_no_limit_and_no_path(tmp_path, robot, seed):
+    rng = np.random.default_rng(seed)
+    print("seed", seed)
+    cell = CELL.format(tick=20, post=[5000, 0, 0]).replace("arm7", robot)
+    if robot == "koch11":
+        cell += "[robot.limits]\nacceleration = [100, 100, 100, 100, 100, 100, 100, 200, 200, 2000, 200]\n"
+    cell = cell.replace("xyz = [149, -600, 660]", "xyz = [0, 0, -9000]")
+    (tmp_path / "ball.toml").write_text(cell, encoding="utf-8")
+    program = LINE.replace("MOVE_INC LIN POSITION(0, 160, 0) SPEED := 30", "WAIT 3 SEC")
+    (tmp_path / "ball.irl").write_text(program, encoding="utf-8")
+    job = prepare(tmp_path / "ball.irl")
+    at, _ = forward(job.cell.robot, job.cell.start[None])
+    place, step = at[0] + rng.normal(0.0, 0.3, 3), rng.normal(0.0, 0.004, 3)
+
+    def where(sample):
+        nonlocal place
+        place = place + step if rng.random() > 0.02 else at[0] + rng.normal(0.0, 0.3, 3)
+        return {"ball": place} if sample.tick > 3 else None
+
+    found = followed(tmp_path / "ball.irl", where)
+    assert off_path(found) < 1e-6
+    # What is said of the tick before that the arm has been off its path by itself, it has not been.
+    assert found.stream.corrections.delayed_ticks == 0
+    inside = distances(found)[1:] < MARGIN - 1e-6
+    assert found.stream.obstacles.near_ticks == np.sum(inside & (np.abs(found.ball[1:, 2]) < 8.0))
