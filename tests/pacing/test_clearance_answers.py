@@ -8,7 +8,7 @@ from itertools import pairwise, permutations
 import numpy as np
 import pytest
 
-from irlx.blocks import AskAvoidingPosture, AskClearance, ObstacleBlock, Origin
+from irlx.blocks import AskClearance, ObstacleBlock, Origin
 from irlx.cell.packaged import packaged_urdf
 from irlx.diagnostics import Place, SourceText, Span
 from irlx.pacing.clearance_answers import Clearances, pairs_of
@@ -190,9 +190,3 @@ def test_options_end_in_any_order():
             left = left.after(switch(name.swapcase(), active=False), np.zeros(3))
             assert set(left.obstacles) == {other.casefold() for other in order[count:]}
     assert options.after(switch("x", active=False), np.zeros(3)) == options
-
-
-@pytest.mark.req("LANG-34")
-def test_a_posture_that_avoids_is_not_there_yet(pacer):
-    with pytest.raises(PacingError, match="IRL590"):
-        pacer.answer(AskAvoidingPosture(HERE, (0.5, 0.5, 0.0), None, "all"))
