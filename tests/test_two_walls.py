@@ -30,7 +30,9 @@ MARGIN = 0.020
 MOST_CHANGES = 4.0
 """Sign changes of a joint's acceleration per second; the runs have 1.2 to 2.9, an oscillation 10 and more."""
 
-every_tick = pytest.mark.parametrize("tick", TICKS)
+every_tick = pytest.mark.parametrize(
+    "tick", [pytest.param(tick, marks=() if tick in (10, 50) else pytest.mark.slow) for tick in TICKS]
+)
 
 
 @cache

@@ -19,7 +19,9 @@ SAME = [10, 20, 25, 40, 50]
 AT_START = 0.972193
 JOINT_9, JOINT_10 = 8, 9
 
-every_tick = pytest.mark.parametrize("tick", SAME)
+every_tick = pytest.mark.parametrize(
+    "tick", [pytest.param(tick, marks=() if tick in (10, 50) else pytest.mark.slow) for tick in SAME]
+)
 
 
 def joints_3_and_4(q: np.ndarray, square) -> tuple[np.ndarray, np.ndarray]:
