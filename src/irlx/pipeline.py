@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import replace
 from math import radians
@@ -21,7 +21,8 @@ from irlx.interpreter.channels.pieces import InputGiven
 from irlx.interpreter.interpret import Interpretation
 from irlx.job import InputsGiven, Job, PathLike, header_of, kinematics_of, prepare
 from irlx.language.suppression import without_ignored
-from irlx.pacing.correction.corrector import CorrectedRow, Corrector
+from irlx.pacing.correction.corrector import CorrectedRow, Corrector, Senses
+from irlx.pacing.correction.nearness import Nearness
 from irlx.pacing.correction.share import CORRECTION_SHARE
 from irlx.pacing.correction.tally import Tally
 from irlx.pacing.correction.tool_rates import ToolRates
@@ -37,6 +38,7 @@ from irlx.pacing.situation import PacingSetup
 from irlx.program import Program
 from irlx.report.recording import Recording
 from irlx.report.run import Run, RunError, RunInterrupted
+from irlx.scene.sightings import Sightings
 from irlx.streams.atomic import AtomicFile
 from irlx.streams.sample import Sample
 from irlx.streams.sample_stream import SampleStream
@@ -49,6 +51,9 @@ Progress = Callable[[Block, float], None]
 Sensor = Callable[[Sample], Sequence[float] | Array | None]
 """Called with the last sample; gives the correction that the tool is to have, None to leave it."""
 
+Watcher = Callable[[Sample], Mapping[str, Sequence[float] | Array | None] | None]
+"""Called with the last sample; gives poses of obstacles by name, None to leave them where they are."""
+
 
 class Execution:
     """One run in progress: a program's blocks, and the pacer that executes them.
@@ -56,7 +61,13 @@ class Execution:
     `channels` are what it reads and writes; `left_open` warns of files that were open at its end.
     """
 
-    def __init__(self, job: Job, resolution: Resolution = EVERY_TICK, planned_share: float = 1.0) -> None:
+    def __init__(
+        self,
+        job: Job,
+        resolution: Resolution = EVERY_TICK,
+        planned_share: float = 1.0,
+        sightings: Sightings | None = None,
+    ) -> None:
         self.job = job
         cell = job.cell
         dt = job.tick_ns / 1e9
@@ -70,7 +81,7 @@ class Execution:
             inputs=job.inputs,
             resolution=resolution,
             planned_share=planned_share,
-            scene=cell.scene,
+            scene=replace(cell.scene, sightings=sightings),
         )
         self.kinematics = setup.kinematics
         self._pacer = Pacer(setup, self._locate)
@@ -104,7 +115,9 @@ class Execution:
 
     def _carried_out(self) -> Generator[Executed, None, None]:
         """What becomes of the blocks; the program runs ahead of them while its moves pass their targets."""
-        ahead = Lookahead(self._locate, self._pacer.notes, obstacles_move=self.job.cell.scene.moves)
+        scene = self._pacer.setup.scene
+        moving = scene.moves or scene.sightings is not None
+        ahead = Lookahead(self._locate, self._pacer.notes, obstacles_move=moving)
         source, reply = self._interpreted(self.channels), None
         with closing(source):
             while True:
@@ -127,13 +140,13 @@ class Execution:
         for group in groups:
             yield from self._pacer.carry_out(group)
 
-    def corrected(self, ask: Callable[[], object], tally: Tally) -> Iterator[CorrectedRow]:
-        """Rows of the program, each corrected by what `ask` says to the one before; see `planned_share`."""
+    def corrected(self, senses: Senses, tally: Tally, nearness: Nearness) -> Iterator[CorrectedRow]:
+        """Rows of the program, each followed as `senses` say to the one before; see `planned_share`."""
         motion = self.job.cell.motion
         rates = ToolRates(
             motion.speed / 1e3, motion.acc / 1e3, radians(motion.speed_ori), radians(motion.acc_ori)
         )
-        return Corrector(self._pacer, rates, ask, tally).rows(self)
+        return Corrector(self._pacer, rates, senses, tally, nearness).rows(self)
 
     def blocks(self, told: Told | None = None) -> Iterator[Block]:
         """Blocks of the program; nothing moves until it asks for the posture that its moves lead to.
@@ -327,6 +340,7 @@ def stream(
     pause_s: float = 0.0,
     on_pause: PauseFunction | None = None,
     correct: Sensor | None = None,
+    obstacles: Watcher | None = None,
 ) -> SampleStream:
     """Samples of a run, one after another, motion by motion as they are asked for.
 
@@ -341,23 +355,37 @@ def stream(
     corrections follow within the rest; `SampleStream.corrections` reports what was delayed. Raises IrlxError
     with IRL583 for a cell with constraints, IRL006 for what is no function; at a sample IRL580, IRL581,
     IRL582 for an answer that is none, IRL584 for a correction for which new limits leave no room.
+
+    `obstacles` is asked after each sample, and before a motion is planned, where obstacles of the cell are in
+    the next one: a mapping from names to three numbers, the position (m) of the obstacle's frame in the
+    world, or six, with its rotation vector (rad); None for as before. Where the program keeps clear of them,
+    the posture makes room within the same part of the limits while the tool keeps its path; where it cannot,
+    the margin gives way, which `SampleStream.obstacles` and a warning, IRL587, tell. Raises IrlxError at a
+    sample: IRL585 for an answer that is none, IRL586 for names that the cell does not have.
     """
     channels = files, input, output
     job = prepare(program, cell, tick_ms, max_slow, max_steps, inputs, *channels, pause_s, on_pause)
-    if correct is None:
-        return SampleStream(_samples(job))
-    if not callable(correct):
-        raise IrlxError(report("IRL006", option="correct=", value=repr(correct), cause="a function"))
-    execution = Execution(job, planned_share=1.0 - CORRECTION_SHARE)
+    if correct is None and obstacles is None:
+        execution = Execution(job)
+        return SampleStream(_samples(execution), lambda: _told(execution))
+    for option, given in (("correct=", correct), ("obstacles=", obstacles)):
+        if given is not None and not callable(given):
+            raise IrlxError(report("IRL006", option=option, value=repr(given), cause="a function"))
+    sightings = None if obstacles is None else Sightings()
+    execution = Execution(job, planned_share=1.0 - CORRECTION_SHARE, sightings=sightings)
     if execution.kinematics.constraints:
         names = ", ".join(one.name for one in execution.kinematics.constraints)
         raise IrlxError(report("IRL583", names=names))
-    tally = Tally(job.cell.robot.joint_names)
-    return SampleStream(_corrected(execution, correct, tally), lambda: tally.report)
+    tally, nearness = Tally(job.cell.robot.joint_names), Nearness()
+    return SampleStream(
+        _followed(execution, correct, obstacles, tally, nearness),
+        lambda: (*_told(execution), *nearness.warnings),
+        lambda: tally.report,
+        lambda: nearness.report,
+    )
 
 
-def _samples(job: Job) -> Generator[Sample, None, None]:
-    execution = Execution(job)
+def _samples(execution: Execution) -> Generator[Sample, None, None]:
     recording = execution.recording()
     yield from recording.take_samples()
     for executed in execution:
@@ -365,9 +393,15 @@ def _samples(job: Job) -> Generator[Sample, None, None]:
         yield from recording.take_samples()
 
 
-def _corrected(execution: Execution, sensor: Sensor, tally: Tally) -> Generator[Sample, None, None]:
+def _followed(
+    execution: Execution, sensor: Sensor | None, watcher: Watcher | None, tally: Tally, nearness: Nearness
+) -> Generator[Sample, None, None]:
     job = execution.job
     sampler, start = Sampler(job.tick_ns), job.cell.start
+    senses = Senses(
+        None if sensor is None else lambda: sensor(sampler.last),
+        None if watcher is None else lambda: watcher(sampler.last),
+    )
     yield sampler.sample(start, *execution.kinematics.tool_pose(start), 0, np.zeros(6))
-    for row in execution.corrected(lambda: sensor(sampler.last), tally):
-        yield sampler.sample(row.q, row.rotation, row.position, row.block.id, row.correction)
+    for row in execution.corrected(senses, tally, nearness):
+        yield sampler.sample(row.q, row.rotation, row.position, row.block.id, row.correction, row.nearest)

@@ -1,6 +1,7 @@
 """Distances between a robot and what it keeps clear of."""
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 from irlx.cell.packaged import packaged_urdf
@@ -8,8 +9,9 @@ from irlx.robot.kinematics import Kinematics
 from irlx.robot.urdf import read_urdf
 from irlx.scene.collision_shape import bounding_radius
 from irlx.scene.distances import Distances
-from irlx.scene.obstacle import Obstacle
+from irlx.scene.obstacle import Obstacle, Waypoint
 from irlx.scene.scene import LinkClearance
+from irlx.scene.sightings import Sightings
 from irlx.scene.watched_pair import WatchedPair, watched_pairs
 from irlx.solids.placement import Placement
 from irlx.solids.shape import Box, Capsule, Cone, Cylinder, Halfspace, Point, Solid, Sphere
@@ -151,3 +153,58 @@ def test_solids_deep_inside_each_other_have_distances(shapes):
             assert np.all(np.abs(values) < 2.0)
         assert np.linalg.norm(near.away[0]) == pytest.approx(1.0, abs=1e-6)
         assert np.all(np.isfinite(found.jacobians(np.zeros(3), near)))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_obstacles_that_are_seen_are_where_they_are_seen(seed):
+    rng = np.random.default_rng(seed)
+    print("seed", seed)
+    arm, sightings = robot(), Sightings()
+    obstacles = scene(rng, 7)
+    way = tuple(Waypoint(t, Placement((1.0 - t, 0.3, 0.5))) for t in (0.0, 2.0))
+    obstacles.append(Obstacle("goes", (Solid(Sphere(0.1)),), way[0].placement, 0.02, 0.4, way))
+    pairs = watched_pairs(arm, obstacles, None)
+    found, q = Distances(arm, pairs, sightings), np.zeros(arm.joints)
+    seen: list[dict[str, pin.SE3]] = [{}, {}]
+    for tick in range(150):
+        sightings.begin_tick()
+        seen = [seen[1], dict(seen[1])]
+        for name in ("O1", "o2", "o6", "Goes"):
+            if rng.random() < (0.02 if tick % 50 else 0.6):
+                place = rng.uniform(-1.0, 1.0, 3)
+            elif rng.random() < 0.5 and name.casefold() in seen[1]:
+                place = seen[1][name.casefold()].translation + rng.normal(0.0, 0.003, 3)
+            else:
+                continue
+            pose = pin.SE3(pin.exp3(rng.normal(0.0, 0.5, 3) * (tick % 3 == 0)), place)
+            sightings.place(name, pose)
+            seen[1][name.casefold()] = pose
+        q = q + rng.normal(0.0, 0.004, arm.joints) * (tick % 4 > 0)
+        for before in (True, False, True):
+            time = 0.01 * (tick + 1 - before)
+            found.at_time(time, before)
+            far, near = found.far(q), found.near(q)
+            truth = brute(arm, obstacles, seen[1 - before], q, time)
+            close = np.flatnonzero(truth < found.influence)
+            assert not (far and close.size)
+            np.testing.assert_array_equal(near.pairs, close)
+            np.testing.assert_allclose(near.distance, truth[close], rtol=0, atol=1e-6)
+
+
+def brute(arm, obstacles, seen, q, time):
+    """Distances (K,) of all pairs, the obstacles put into the scene as those that rest there."""
+    still = []
+    for one in obstacles:
+        pose = seen.get(one.name)
+        if pose is None and one.trajectory:
+            place = Placement((1.0 - min(time, 2.0), 0.3, 0.5))
+        elif pose is None:
+            place = one.placement
+        else:
+            turn = pin.Quaternion(pose.rotation).coeffs()
+            place = Placement(tuple(pose.translation), tuple(turn))
+        # The trajectory keeps its pairs the same: links that no joint moves are watched for it.
+        way = (Waypoint(0.0, place),) if one.trajectory else ()
+        still.append(Obstacle(one.name, one.solids, place, one.margin, one.influence, way))
+    fresh = Distances(arm, watched_pairs(arm, still, None))
+    return fresh.of(q, np.arange(len(fresh.pairs))).distance

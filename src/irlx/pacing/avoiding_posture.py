@@ -37,7 +37,8 @@ def avoiding_posture(question: AskAvoidingPosture, situation: Situation) -> tupl
     """
     place = situation.locate(question.origin)
     pairs = pairs_of(question.name, situation.kinematics, situation.setup.scene, place)
-    clearance = Clearance(Distances(situation.kinematics, pairs), situation.tick * situation.dt)
+    distances = Distances(situation.kinematics, pairs, situation.setup.scene.sightings)
+    clearance = Clearance(distances, situation.tick * situation.dt)
     clearance.after(0.0)
     in_force = situation.in_force()
     target = PoseTarget(question.position, question.orientation)

@@ -31,7 +31,7 @@ class Clearances:
         key = question.name.casefold()
         if key not in self._ready:
             pairs = pairs_of(question.name, self._kinematics, self._scene, place)
-            self._ready[key] = Distances(self._kinematics, pairs)
+            self._ready[key] = Distances(self._kinematics, pairs, self._scene.sightings)
         distances = self._ready[key]
         distances.at_time(time)
         found = distances.of(np.array(question.posture), np.arange(len(distances.pairs)))

@@ -21,4 +21,4 @@ def kept_clear(kinematics: Kinematics, scene: Scene, options: Options) -> Cleara
         for obstacle in scene.members(switch.name)
     }
     pairs = watched_pairs(kinematics, obstacles.values(), scene.links)
-    return Clearance(Distances(kinematics, pairs)) if pairs else None
+    return Clearance(Distances(kinematics, pairs, scene.sightings)) if pairs else None

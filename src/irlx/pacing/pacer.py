@@ -116,6 +116,11 @@ class Pacer:
         return tuple(posture_of_pose(target, near, situation, situation.in_force(), place).tolist())
 
     @property
+    def clearance(self) -> Clearance | None:
+        """What is kept clear as the switches stand, None where nothing is."""
+        return self._clearance
+
+    @property
     def _clear_from_now(self) -> Clearance | None:
         """What is kept clear in a motion that begins now."""
         return None if self._clearance is None else self._clearance.beginning(self.tick * self.setup.dt)

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from irlx.robot.kinematics import Kinematics
 from irlx.scene.collision_shape import bounding_radius, collision_shape, pose_of
 from irlx.scene.levers import Levers
-from irlx.scene.trajectory import Trajectory
+from irlx.scene.sightings import Sightings
+from irlx.scene.trajectory import Resting, Trajectory, Way
 from irlx.scene.watched_pair import WatchedPair
 from irlx.solids.shape import Solid
 
@@ -56,15 +57,32 @@ class Near:
         return Near(self.pairs[which], self.distance[which], self.away[which], *points)
 
 
-class Distances:
-    """Distances between watched pairs of solids.
+@dataclass
+class _Placed:
+    """A solid of an obstacle that moves or may be seen: its number, pose in the obstacle, radius (m).
 
-    A pair is looked at again only where the joints have moved far enough since it was looked at last
-    (`Levers`), and once in a posture; what is found does not depend on that. Not safe for use by several
-    threads at once.
+    `pose` is where the obstacle's frame is in the world now.
     """
 
-    def __init__(self, kinematics: Kinematics, pairs: Sequence[WatchedPair]) -> None:
+    number: int
+    name: str
+    within: pin.SE3
+    radius: float
+    way: Way
+    pose: pin.SE3
+
+
+class Distances:
+    """Distances between watched pairs of solids, obstacles where their trajectories or `sightings` put them.
+
+    A pair is looked at again only where the joints have moved far enough since it was looked at last
+    (`Levers`), or the obstacle, and once in a posture; what is found does not depend on that. Not safe for
+    use by several threads at once.
+    """
+
+    def __init__(
+        self, kinematics: Kinematics, pairs: Sequence[WatchedPair], sightings: Sightings | None = None
+    ) -> None:
         self.kinematics = kinematics
         self.pairs = tuple(pairs)
         self.margin = np.array([pair.margin for pair in pairs])
@@ -74,7 +92,9 @@ class Distances:
         self._bodies: list[int] = []
         self._radii: list[float] = []
         self._sizes: list[float] = []
-        self._moving: list[tuple[int, pin.SE3, Trajectory]] = []
+        self._sightings = sightings
+        self._count, self._before = 0, False
+        self._placed: list[_Placed] = []
         self._speeds: list[float] = []
         self._first = np.array([self._add_of_link(p.link, p.solid) for p in pairs], dtype=np.intp)
         self._second = np.array([self._add_other(p) for p in pairs], dtype=np.intp)
@@ -108,26 +128,65 @@ class Distances:
         self._time = self._looked_at = 0.0
         self._rates = np.array([self._speeds[k] for k in self._second])
         self._fastest = float(np.max(self._rates, initial=0.0))
+        self.at_time(0.0)
 
-    def at_time(self, time: float) -> None:
-        """Put the obstacles that move where they are at a `time` (s) of the run."""
-        if not self._moving or time == self._time:
+    def at_time(self, time: float, before: bool = False) -> None:
+        """Put obstacles that move where they are at a `time` (s) of the run, and those seen where they are.
+
+        `before`: those that are seen where they were before the tick that goes on.
+        """
+        seen = self._sightings
+        count = 0 if seen is None else seen.count
+        if not self._placed or (time, count, before) == (self._time, self._count, self._before):
             return
-        self._time, self._here, self._all_near = time, None, None
-        for number, within, trajectory in self._moving:
-            self._model.geometryObjects[number].placement = trajectory.pose(time) * within
+        self._time, self._count, self._before = time, count, before
+        self._all_near = None
+        for placed in self._placed:
+            way, name = placed.way, placed.name
+            pose = way.pose(time) if seen is None else seen.pose(name, time, way, before)
+            if pose is placed.pose:
+                continue
+            if seen is not None and seen.known(placed.name):
+                self._jumped(placed, pose)
+            self._here, placed.pose = None, pose
+            self._model.geometryObjects[placed.number].placement = pose * placed.within
+
+    def _jumped(self, placed: _Placed, pose: pin.SE3) -> None:
+        """Make what is known of the pairs of a solid less by the most that it may have come nearer."""
+        way = float(np.linalg.norm(pose.translation - placed.pose.translation))
+        turn = float(np.linalg.norm(pin.log3(placed.pose.rotation.T @ pose.rotation)))
+        if turn > 0.0:
+            way += turn * placed.radius
+        if self._speeds[placed.number] > 0.0:
+            # On its own way it was somewhere else when it was looked at.
+            way = np.inf
+        self._least = self._least - np.where(self._second == placed.number, way, 0.0)
+        self._slack -= way
 
     @property
     def moves(self) -> bool:
-        """Whether any obstacle moves."""
-        return bool(self._moving)
+        """Whether any obstacle moves by itself; one that is seen rests, for all that is known."""
+        seen = self._sightings
+        return any(
+            self._speeds[placed.number] > 0.0 and not (seen and seen.known(placed.name))
+            for placed in self._placed
+        )
+
+    @property
+    def seen(self) -> NDArray[np.bool_]:
+        """The pairs (K,) whose obstacle somebody sees."""
+        seen = self._sightings
+        return np.array(
+            [bool(seen and pair.obstacle is not None and seen.known(pair.other)) for pair in self.pairs],
+            dtype=bool,
+        )
 
     def far(self, q: Array) -> bool:
         """Whether it is certain without a look that no pair is within its influence at posture q (n,)."""
         if self._slack <= 0.0 or self._longest is None:
             return False
         moved = self._longest.dot(np.abs(q - self._last))
-        if self._moving:
+        if self._fastest > 0.0:
             moved += self._fastest * abs(self._time - self._looked_at)
         return bool(moved < self._slack)
 
@@ -138,7 +197,7 @@ class Distances:
             return self._all_near
         reach = self.influence if within is None else within
         least = self._least - self._levers.moved(self._last, q)
-        if self._moving:
+        if self._fastest > 0.0:
             least = least - self._rates * abs(self._time - self._looked_at)
             self._looked_at = self._time
         asked = (least < reach).nonzero()[0]
@@ -253,12 +312,14 @@ class Distances:
         world = pose_of(pair.obstacle.placement) * within
         known = len(self._numbers)
         number = self._add((pair.other, False, id(pair.other_solid)), 0, world, pair.other_solid)
-        if pair.obstacle.trajectory and number == known:
-            trajectory = Trajectory(pair.obstacle)
+        trajectory = Trajectory(pair.obstacle) if pair.obstacle.trajectory else None
+        if number == known and (trajectory or self._sightings is not None):
             radius = float(np.linalg.norm(within.translation)) + bounding_radius(pair.other_solid.shape)
-            self._speeds[number] = trajectory.fastest(radius)
-            self._model.geometryObjects[number].placement = trajectory.pose(0.0) * within
-            self._moving.append((number, within, trajectory))
+            way: Way = trajectory or Resting(pair.obstacle)
+            begun = way.pose(0.0)
+            self._speeds[number] = trajectory.fastest(radius) if trajectory else 0.0
+            self._model.geometryObjects[number].placement = begun * within
+            self._placed.append(_Placed(number, pair.obstacle.name, within, radius, way, begun))
         return number
 
     def _add(self, key: tuple[str, bool, int], joint: int, pose: pin.SE3, solid: Solid) -> int:

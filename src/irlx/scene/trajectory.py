@@ -3,12 +3,31 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import Protocol
 
 import numpy as np
 import pinocchio as pin
 
 from irlx.scene.collision_shape import pose_of
 from irlx.scene.obstacle import Obstacle
+
+
+class Way(Protocol):
+    """Where something is at a time."""
+
+    def pose(self, time: float) -> pin.SE3:
+        """Pose of its frame in the world at a time (s)."""
+
+
+class Resting:
+    """The way of an obstacle that stays where it is."""
+
+    def __init__(self, obstacle: Obstacle) -> None:
+        self._pose = pose_of(obstacle.placement)
+
+    def pose(self, time: float) -> pin.SE3:
+        """Pose of the obstacle's frame, the same at any time (s)."""
+        return self._pose
 
 
 class Trajectory:
@@ -41,3 +60,8 @@ class Trajectory:
             turn = float(np.linalg.norm(pin.log3(before.rotation.T @ behind.rotation)))
             found.append((way + turn * radius) / float(t1 - t0))
         return max(found)
+
+
+def way_of(obstacle: Obstacle) -> Way:
+    """The way that the cell says an obstacle goes."""
+    return Trajectory(obstacle) if obstacle.trajectory else Resting(obstacle)

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from irlx.pacing.correction.nearness import NearPair
+
 Array = NDArray[np.float64]
 
 
@@ -16,7 +18,9 @@ class Sample:
 
     `t` in s; `q`, `qd`, `qdd` (n,) rad | m and per s, s2; `tool` (7,) x y z m and quaternion x y z w;
     `block` is the id of the move in execution; `correction` (6,) is the one that the tool has, None where no
-    sensor corrects: displacement x y z in m and rotation vector in rad, in the programmed tool frame.
+    sensor corrects: displacement x y z in m and rotation vector in rad, in the programmed tool frame;
+    `nearest` is the pair with the least room above its margin, None beyond all influences, and where rows
+    are not followed tick by tick.
     """
 
     tick: int
@@ -27,3 +31,4 @@ class Sample:
     tool: Array
     block: int
     correction: Array | None = None
+    nearest: NearPair | None = None

@@ -1,9 +1,11 @@
-"""What `irlx.stream` returns: samples, and what became of a sensor's corrections."""
+"""What `irlx.stream` returns: samples, and what became of what sensors said."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator
 
+from irlx.diagnostics import Diagnostic
+from irlx.pacing.correction.nearness import ObstacleReport
 from irlx.pacing.correction.report import CorrectionReport
 from irlx.streams.sample import Sample
 
@@ -14,10 +16,14 @@ class SampleStream(Iterator[Sample]):
     def __init__(
         self,
         samples: Generator[Sample, None, None],
+        warnings: Callable[[], tuple[Diagnostic, ...]] = tuple,
         corrections: Callable[[], CorrectionReport] | None = None,
+        obstacles: Callable[[], ObstacleReport] | None = None,
     ) -> None:
         self._samples = samples
+        self._warnings = warnings
         self._corrections = corrections
+        self._obstacles = obstacles
 
     def __next__(self) -> Sample:
         return next(self._samples)
@@ -28,5 +34,15 @@ class SampleStream(Iterator[Sample]):
 
     @property
     def corrections(self) -> CorrectionReport | None:
-        """What became of corrections until now, None where no sensor corrects."""
+        """What became of corrections until now, None where rows are not followed tick by tick."""
         return None if self._corrections is None else self._corrections()
+
+    @property
+    def obstacles(self) -> ObstacleReport | None:
+        """What came too near until now, None where rows are not followed tick by tick."""
+        return None if self._obstacles is None else self._obstacles()
+
+    @property
+    def warnings(self) -> tuple[Diagnostic, ...]:
+        """Warnings until now, those of program and cell first."""
+        return self._warnings()

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from irlx.pacing.correction.nearness import NearPair
 from irlx.streams.sample import Sample
 
 Array = NDArray[np.float64]
@@ -27,7 +28,13 @@ class Sampler:
         self._quaternion: Array | None = None
 
     def sample(
-        self, q: Array, rotation: Array, position: Array, block: int, correction: Array | None
+        self,
+        q: Array,
+        rotation: Array,
+        position: Array,
+        block: int,
+        correction: Array | None,
+        nearest: NearPair | None = None,
     ) -> Sample:
         """The next sample: posture (n,), rotation (3, 3) and position (3,) m of the tool, id of the block.
 
@@ -44,5 +51,5 @@ class Sampler:
         tool = np.concatenate([position, quaternion])
         t = self._tick * self._tick_ns / 1e9
         own = None if correction is None else correction.copy()
-        self.last = Sample(self._tick, t, q.copy(), qd.copy(), qdd, tool, block, own)
+        self.last = Sample(self._tick, t, q.copy(), qd.copy(), qdd, tool, block, own, nearest)
         return self.last

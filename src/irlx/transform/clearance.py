@@ -7,10 +7,15 @@ A pair that is d0 away at the start of a tick of dt may lose the part dt/tau of 
 one that is inside its margin none of what it had when the motion began. S is the whole step of the tick.
 Distances are linearised at the iterates of Newton's method, until these hardly move any more: a distance
 bends, but little over so short a way, and a row that stays the same lets the steps settle.
+
+From an obstacle that somebody sees while the program runs (`follow`) a pair inside its margin has to win the
+part dt/tau of what it lacks; one outside it goes along with what the obstacle comes nearer in the tick, but
+for the part dt/tau_seen of what is left above the margin.
 """
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,6 +28,10 @@ Numbers = NDArray[np.intp]
 
 APPROACH_TIME = 0.1
 """Time constant tau (s) with which a pair comes near its margin."""
+
+SEEN_TIME = 0.5
+"""Time constant tau_seen (s) with which a pair gives way to an obstacle that is seen coming: its speed is
+not known before, and joints need time to take it on."""
 
 RESERVE = 2e-6
 """Distance (m) that ticks keep beside a margin: room for what `ALLOWANCE` lets them lose of it."""
@@ -102,6 +111,21 @@ class Clearance:
             inside = self._at_start.pairs
             lowest[inside] = np.minimum(least[inside], self._at_start.distance)
         return TickClearance(distances, q, dt, (least, lowest), self.begin + elapsed, paced)
+
+    def following_tick(self, q: Array, base: Array, dt: float) -> TickClearance:
+        """The floors of the first tick of dt s, in which the plan moves the joints by `base` (n,)."""
+        self.distances.at_time(self.begin, before=True)
+        least = self.distances.margin + RESERVE
+        lowest, inside = least.copy(), self.distances.near(q, least)
+        lowest[inside.pairs] = inside.distance
+        tick = TickClearance(self.distances, q, dt, (least, lowest), self.begin, before=True)
+        tick.follow(base)
+        return tick
+
+    def begins_far(self, q: Array) -> bool:
+        """Whether all is certainly far from posture q (n,) at the begin, obstacles where they were before."""
+        self.distances.at_time(self.begin, before=True)
+        return self.distances.far(q)
 
     def nears(self, q: Array, elapsed: float) -> bool:
         """Whether a tick that began without floors must not end at q (n,) unseen."""
@@ -186,6 +210,7 @@ class TickClearance:
         least: tuple[Array, Array],
         time: float,
         paced: bool = True,
+        before: bool = False,
     ) -> None:
         """A tick of dt s from posture q (n,) at a `time` (s) of the run.
 
@@ -193,9 +218,10 @@ class TickClearance:
         """
         self._distances = distances
         self._end = time + dt
-        distances.at_time(time)
+        distances.at_time(time, before)
         self._q = q
-        self._lowest = least[1]
+        self._dt = dt
+        self._least, self._lowest = least
         self._within = within(distances, self._lowest)
         self.near = distances.near(q)
         pairs, found = self.near.pairs, self.near.distance
@@ -205,6 +231,23 @@ class TickClearance:
         self._looked_from = np.zeros_like(q)
         self._gradient: Array | None = None
         self._looks = 0
+
+    def follow(self, base: Array) -> None:
+        """Raise the floors of obstacles that are seen; `base` (n,) is what the joints do of themselves."""
+        pairs, before = self.near.pairs, self.near.distance
+        seen = self._distances.seen[pairs]
+        if not np.any(seen):
+            return
+        self._distances.at_time(self._end)
+        here = self._distances.of(self._q, pairs).distance
+        there = self._distances.of(self._q + base, pairs).distance
+        room = before - self._least[pairs]
+        coming = np.maximum(before - here, 0.0)
+        left = room * min(self._dt / SEEN_TIME, 1.0)
+        slower = np.minimum(there + np.maximum(coming - left, 0.0), before - left)
+        leaving = before - room * min(self._dt / APPROACH_TIME, 1.0)
+        raised = np.where(room < 0.0, leaving, slower)
+        self.floors = np.where(seen, np.maximum(self.floors, raised), self.floors)
 
     def rows(self, whole: Array) -> SideRows:
         """Rows of the Newton step at the iterate `whole` (n,), the step since the start of the tick."""
@@ -235,6 +278,39 @@ class TickClearance:
         self.near = distances.of(self._q, pairs)
         self._gradient = None
         return False
+
+    def stays_clear(self, whole: Array, further: Array) -> bool:
+        """Whether what is near also stays clear where the step `whole` (n,) goes on by `further` (n,).
+
+        To first order. Pairs inside their margins count where they come nearer still.
+        """
+        if not len(self.near.pairs):
+            return True
+        self._look(whole)
+        assert self._gradient is not None
+        loss = self._gradient @ further
+        left = self.near.distance + loss - self._least[self.near.pairs]
+        return bool(np.all((left >= -ALLOWANCE) | (loss >= 0.0)))
+
+    def at_margins(self) -> TickClearance:
+        """The same tick where all may come as near as their margins at once, or stay as near as they are."""
+        found = self.again()
+        found.floors = np.minimum(found.floors, self._least[self.near.pairs])
+        return found
+
+    def again(self) -> TickClearance:
+        """The same tick, not looked at yet but for its start."""
+        return self.without(np.zeros(0, dtype=np.intp))
+
+    def without(self, pairs: Numbers) -> TickClearance:
+        """The same tick in which these pairs (by number) may come as near as they like."""
+        found = copy(self)
+        found._least, found._lowest = self._least.copy(), self._lowest.copy()
+        found._least[pairs] = found._lowest[pairs] = -np.inf
+        stay = ~np.isin(self.near.pairs, pairs)
+        found.near, found.floors = self.near.chosen(stay), self.floors[stay]
+        found._gradient, found._looks = None, 0
+        return found
 
     @property
     def exhausted(self) -> bool:

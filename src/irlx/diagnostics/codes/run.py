@@ -133,6 +133,22 @@ RUN = (
         "let the sensor take the correction back before, or end the freeze or the limit of its speed",
     ),
     error(
+        "IRL585",
+        "obstacles for tick {tick} are given by {found}, not by three or six numbers for each name",
+        "return {{name: (x, y, z)}} or {{name: (x, y, z, rx, ry, rz)}}, m and rad, or None for as before",
+    ),
+    error(
+        "IRL586",
+        "obstacles for tick {tick} name '{name}', which is no obstacle of the cell{near}",
+        "obstacles that it has: {known}; a group is moved by placing its members",
+    ),
+    warning(
+        "IRL587",
+        "{pair} came within {distance} (tick {tick}), {margin} are kept: no posture within limits and on the"
+        " path was farther away in time",
+        "let the obstacle come slower, raise its margin and influence, or slow the program down",
+    ),
+    error(
         "IRL590",
         "this version of irlx reads {what} but does not execute it yet",
         "docs/reference/language.md lists what is executed",

@@ -24,13 +24,17 @@ BRAKING_PART = 0.8
 
 
 class Governor(NamedTuple):
-    """What decides how fast a correction changes: a joint's bound; joint -1 for the tool's own rates."""
+    """What decides how fast a correction changes: a joint's bound; joint -1 for the tool's own rates.
+
+    Joint -2 where something would come too near, whatever the source says.
+    """
 
     joint: int
     source: BoundSource
 
 
 TOOL = -1
+TOO_NEAR = Governor(-2, BoundSource.POSITION)
 
 
 @dataclass(frozen=True)

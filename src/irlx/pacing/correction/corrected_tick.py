@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.pacing.correction.approach import Governor, Pace, approach
+from irlx.pacing.correction.approach import TOO_NEAR, Governor, Pace, approach
+from irlx.pacing.correction.giving_way import retreat_of
 from irlx.pacing.correction.offset_limiter import OffsetLimiter
 from irlx.pacing.correction.plan import PlannedRow
 from irlx.pacing.correction.tool_offset import corrected_pose, correction_between, twist_of_rate
 from irlx.pacing.correction.tool_rates import ToolRates
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
+from irlx.transform.clearance import Clearance, TickClearance
 from irlx.transform.criteria.posture import Posture
 from irlx.transform.step_bounds import BoundSource, StepBounds, braking_speed
 from irlx.transform.tick import TickSolution, TickSolver
@@ -31,17 +33,24 @@ SNAP = 1e-11
 STILL = 1e-13
 """Step of an offset (rad or m) below which it counts as standing."""
 
+SLOW = 1e-7
+"""Step of an offset (rad or m) from which on it may brake joint by joint: the tool hardly moves for it."""
+
 _BRAKING = 0.8
 
 
 class Surroundings(NamedTuple):
-    """What ticks are solved with: the robot, its weights (n,), what may move, and the bounds."""
+    """What ticks are solved with: the robot, its weights (n,), what may move, and the bounds.
+
+    `clearance` is what is kept clear, from the tick on that it begins with.
+    """
 
     solver: TickSolver
     weights: Array
     free: NDArray[np.bool_]
     limiter: OffsetLimiter
     rates: ToolRates
+    clearance: Clearance | None = None
 
     @property
     def kinematics(self) -> Kinematics:
@@ -98,26 +107,72 @@ def uncorrected(row: PlannedRow) -> Corrected:
 
 
 def corrected_tick(before: Corrected, row: PlannedRow, request: Array, around: Surroundings) -> Corrected:
-    """The robot one tick later, on its way from the correction it has to the one that is asked for."""
-    if before.as_planned and not np.any(request):
+    """The robot one tick later, on its way from the correction it has to the one that is asked for.
+
+    Limits are kept first, then the pose, then what must stay clear, and then the correction goes on.
+    """
+    clearance, dt = around.clearance, around.limiter.dt
+    if clearance is None:
+        return _followed(before, row, request, around, None)
+    if clearance.begins_far(before.q):
+        found = _followed(before, row, request, around, None)
+        if not clearance.nears(found.q, dt):
+            return found
+    keeping = clearance.following_tick(before.q, row.q - before.row.q, dt)
+    return _followed(before, row, request, around, keeping)
+
+
+def _followed(
+    before: Corrected, row: PlannedRow, request: Array, around: Surroundings, keeping: TickClearance | None
+) -> Corrected:
+    if before.as_planned and not np.any(request) and _clear(keeping, row.q - before.q):
         return uncorrected(row)
-    wanted = approach(before.correction, before.rate, request, _pace(before, around), around.limiter.dt)
-    if _stands(before, row, wanted.correction, around.limiter.dt):
+    pace, dt = _pace(before, around), around.limiter.dt
+    wanted = approach(before.correction, before.rate, request, pace, dt)
+    if _stands(before, row, wanted.correction, dt) and _clear(keeping, np.zeros(row.q.size)):
         return Corrected(row, before.q, np.zeros(row.q.size), before.correction, np.zeros(6))
     bounds = around.limiter.bounds(before.offset, before.speed, row.lowest, row.highest)
-    tick = _Tick(before, row, bounds, _criterion(before, row, wanted.correction, around), around)
+    criterion = _criterion(before, row, wanted.correction, around)
+    tick = _Tick(before, row, bounds, criterion, around, keeping, pace)
     found = tick.solved(wanted.correction)
     governor = wanted.governor if np.any(wanted.correction != request) else None
     if found is not None:
         return tick.reached(found, wanted.correction, governor)
+    if keeping is not None:
+        resting = approach(before.correction, before.rate, before.correction, pace, dt)
+        pressed = tick.pressed(resting.correction, wanted.correction, request)
+        if pressed is not None:
+            return pressed
+        tick = replace(tick, keeping=None)
+        found = tick.solved(wanted.correction)
+        if found is not None:
+            return tick.reached(found, wanted.correction, governor)
     held = tick.holding(wanted.correction)
     return tick.nearest(wanted.correction, held)
 
 
+def _clear(keeping: TickClearance | None, step: Array) -> bool:
+    return keeping is None or keeping.kept(step)
+
+
 def braked_tick(before: Corrected, row: PlannedRow, around: Surroundings) -> Corrected:
-    """The robot one tick later, its offset braking as hard as it may; the correction follows from that."""
+    """The robot one tick later, its offset braking as hard as it may.
+
+    A correction that stands stays as it is for as long as there is a posture for it; else it follows.
+    """
     bounds = around.limiter.bounds(before.offset, before.speed, row.lowest, row.highest)
-    return stepped(before, row, around.limiter.braked(before.speed, bounds), around)
+    step = around.limiter.braked(before.speed, bounds)
+    going = before.speed * around.limiter.dt
+    if float(np.max(np.abs(going))) > SLOW and not np.any(before.rate):
+        reference = before.q + (row.q - before.row.q) + step
+        tick = _Tick(before, row, bounds, Posture(around.weights, reference), around)
+        found = tick.solved(before.correction)
+        if found is not None:
+            held = tick.reached(found, before.correction, None)
+            left = float(np.linalg.norm(held.speed)) * around.limiter.dt
+            if left <= 0.5 * float(np.linalg.norm(going) + np.linalg.norm(step)):
+                return held
+    return stepped(before, row, step, around)
 
 
 def stepped(before: Corrected, row: PlannedRow, step: Array, around: Surroundings) -> Corrected:
@@ -192,13 +247,18 @@ def _criterion(before: Corrected, row: PlannedRow, wanted: Array, around: Surrou
 
 @dataclass(frozen=True)
 class _Tick:
-    """A tick that is being solved: `bounds` of the step of the offset, `criterion` of the posture."""
+    """A tick that is being solved: `bounds` of the step of the offset, `criterion` of the posture.
+
+    `keeping` are the floors of what is near; with `pace` a correction must also be able to stop before it.
+    """
 
     before: Corrected
     row: PlannedRow
     bounds: StepBounds
     criterion: Posture
     around: Surroundings
+    keeping: TickClearance | None = None
+    pace: Pace | None = None
 
     @property
     def planned_step(self) -> Array:
@@ -214,13 +274,25 @@ class _Tick:
             StepBounds(move + bounds.lower, move + bounds.upper, find_sources=lambda: bounds),
             self.criterion,
             self.around.free,
+            None if self.keeping is None else self.keeping.again(),
         )
 
     def solved(self, correction: Array) -> TickSolution | None:
         """The posture of a corrected pose, None where the bounds leave none."""
         seed = self.planned_step + self.before.speed * self.around.limiter.dt
         found = self.around.solver.solve(self.problem(correction), seed, thorough=False)
-        return found if found.solved else None
+        return found if found.solved and self._stops_in_time(found.q, correction) else None
+
+    def _stops_in_time(self, q: Array, correction: Array) -> bool:
+        """Whether a correction (6,) that goes on as it came in this tick can still brake before a margin."""
+        rate = (correction - self.before.correction) / self.around.limiter.dt
+        speed = float(np.linalg.norm(rate))
+        if self.keeping is None or self.pace is None or speed == 0.0:
+            return True
+        able, _ = self.pace.acceleration(-rate / speed)
+        braking = speed / (2.0 * _BRAKING * able) + self.around.limiter.dt
+        further = self.pace.joint_rates @ (rate * braking)
+        return self.keeping.again().stays_clear(q - self.before.q, further)
 
     def reached(
         self, found: TickSolution, correction: Array, governor: Governor | None, refused: bool = False
@@ -235,6 +307,7 @@ class _Tick:
         step = np.where(self.around.free, q - row.q - before.offset, 0.0)
         rate = (correction - before.correction) / dt
         bent = refused or bool(np.any(found.active)) or self._pulled_back(row)
+        bent = bent or (self.keeping is not None and bool(np.any(q != row.q)))
         return Corrected(row, q, step / dt, correction, rate, bent, governor, refused)
 
     def _may_step(self, q: Array) -> NDArray[np.bool_]:
@@ -243,6 +316,43 @@ class _Tick:
 
     def _pulled_back(self, row: PlannedRow) -> bool:
         return self.criterion.reference is not row.q
+
+    def pressed(self, resting: Array, wanted: Array, request: Array) -> Corrected | None:
+        """The tick where something would come too near on the way to a correction `wanted` (6,).
+
+        What lies between `resting`, the correction that stands or brakes, and the wanted one is kept clear
+        where that goes; else the posture leaves the margin as fast as it may. None where bounds leave no
+        posture at all.
+        """
+        governor = TOO_NEAR if np.any(resting != request) else None
+        braking = replace(self, pace=None)
+        if np.any(resting != wanted):
+            first = braking.solved(resting)
+            if first is not None:
+                found = self._farthest(resting, wanted) or (first, resting)
+                return self.reached(*found, TOO_NEAR, refused=True)
+        if self.keeping is not None and np.any(resting != self.before.correction):
+            # It brakes as hard as it may, and had been let go so fast that this is enough.
+            first = replace(braking, keeping=self.keeping.at_margins()).solved(resting)
+            if first is not None:
+                return self.reached(first, resting, TOO_NEAR, refused=True)
+        return self._giving_way(resting, governor)
+
+    def _giving_way(self, correction: Array, governor: Governor | None) -> Corrected | None:
+        """The tick in which the posture leaves what is too near as fast as it may; other pairs stay clear."""
+        if self.keeping is None:
+            return None
+        around, base = self.around, self.planned_step
+        # What was far before the tick counts from here on.
+        self.keeping.kept(base)
+        retreat = retreat_of(self.problem(correction), around.kinematics, around.weights, base)
+        criterion = Posture(around.weights, self.before.q + base + retreat.step)
+        for keeping in (self.keeping.without(retreat.pairs), None):
+            tick = replace(self, criterion=criterion, keeping=keeping, pace=None)
+            found = tick.solved(correction)
+            if found is not None:
+                return tick.reached(found, correction, governor, refused=governor is not None)
+        return None
 
     def holding(self, wanted: Array) -> Governor:
         """The bound that keeps the offset from a step towards a correction (6,) the most."""
@@ -260,18 +370,23 @@ class _Tick:
         braked = stepped(
             self.before, self.row, self.around.limiter.braked(self.before.speed, self.bounds), self.around
         )
-        low, high = 0.0, 1.0
-        best: tuple[TickSolution, Array] | None = None
-        for _ in range(REFINEMENTS):
-            share = 0.5 * (low + high)
-            between = braked.correction + share * (wanted - braked.correction)
-            found = self.solved(between)
-            if found is None:
-                high = share
-            else:
-                low, best = share, (found, between)
+        best = self._farthest(braked.correction, wanted)
         if best is None:
             return Corrected(
                 braked.row, braked.q, braked.speed, braked.correction, braked.rate, True, held, True
             )
         return self.reached(*best, held, refused=True)
+
+    def _farthest(self, near: Array, far: Array) -> tuple[TickSolution, Array] | None:
+        """The farthest correction (6,) from `near` to `far` that has a posture, beyond `near` itself."""
+        low, high = 0.0, 1.0
+        best: tuple[TickSolution, Array] | None = None
+        for _ in range(REFINEMENTS):
+            share = 0.5 * (low + high)
+            between = near + share * (far - near)
+            found = self.solved(between)
+            if found is None:
+                high = share
+            else:
+                low, best = share, (found, between)
+        return best

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
+import pinocchio as pin
 from numpy.typing import NDArray
 
 from irlx.blocks import Block
@@ -20,7 +21,9 @@ from irlx.pacing.correction.corrected_tick import (
     stepped,
     uncorrected,
 )
+from irlx.pacing.correction.nearness import Nearness, NearPair
 from irlx.pacing.correction.offset_limiter import OffsetLimiter
+from irlx.pacing.correction.placements import read_placements
 from irlx.pacing.correction.plan import PlannedMotion, PlannedRow, goes_on, planned_motion
 from irlx.pacing.correction.request import SIZE, read_request
 from irlx.pacing.correction.retreat import AT_GOAL, retreat_goal, retreat_step
@@ -34,6 +37,7 @@ from irlx.pacing.impossible import joint_value
 from irlx.pacing.pacer import Pacer
 from irlx.promises import PATH_ORIENTATION, PATH_POSITION
 from irlx.robot.limits import JointLimits
+from irlx.scene.trajectory import way_of
 from irlx.transform.tick import TickSolver
 
 Array = NDArray[np.float64]
@@ -43,26 +47,43 @@ NEWTON_STEPS = 15
 
 
 class CorrectedRow(NamedTuple):
-    """A row to emit: posture (n,), rotation (3, 3) and position (3,) m of the tool, its block, correction."""
+    """A row to emit: posture (n,), rotation (3, 3) and position (3,) m of the tool, its block, correction.
+
+    `nearest` is what comes nearest to its margin, None where everything is far.
+    """
 
     q: Array
     rotation: Array
     position: Array
     block: Block
     correction: Array
+    nearest: NearPair | None = None
+
+
+@dataclass(frozen=True)
+class Senses:
+    """What is known of the world while a program runs: each answers to the row that was emitted last.
+
+    `ask` the correction that the tool is to have, `look` where obstacles are; None where nobody says it.
+    """
+
+    ask: Callable[[], object] | None = None
+    look: Callable[[], object] | None = None
 
 
 class Corrector:
-    """Adds corrections to the rows that a pacer has planned with less than the whole limits (`share.py`).
+    """Follows the rows that a pacer has planned with less than the whole limits (`share.py`).
 
-    `ask` gives what the sensor says to the row that was emitted last; `tally` counts what becomes of
-    it. A tick that the robot has to stand for is added to the clock of the pacer.
+    It adds corrections, and makes room for obstacles that are seen; `tally` and `nearness` count what becomes
+    of it. A tick that the robot has to stand for is added to the clock of the pacer.
     """
 
-    def __init__(self, pacer: Pacer, rates: ToolRates, ask: Callable[[], object], tally: Tally) -> None:
+    def __init__(
+        self, pacer: Pacer, rates: ToolRates, senses: Senses, tally: Tally, nearness: Nearness
+    ) -> None:
         self._pacer = pacer
         setup = pacer.setup
-        self._rates, self._ask = rates, ask
+        self._rates, self._senses = rates, senses
         self._solver = TickSolver(setup.kinematics, pacer.qp, NEWTON_STEPS)
         self._modelled = setup.kinematics
         rotation, position = setup.kinematics.tool_pose(setup.start)
@@ -71,7 +92,8 @@ class Corrector:
         self._request = np.zeros(6)
         self._around: Surroundings | None = None
         self._tick = 0
-        self.tally = tally
+        self._looked_at = -1
+        self.tally, self.nearness = tally, nearness
 
     def rows(self, executed: Iterable[Executed]) -> Iterator[CorrectedRow]:
         """Rows of the blocks, corrected; they end at rest, also where the program ends in an error.
@@ -80,6 +102,8 @@ class Corrector:
         """
         source = iter(executed)
         while True:
+            # Motions are planned with obstacles where they are then.
+            self._look(self._now.row.block)
             try:
                 motion = self._next(source)
             except IrlxError:
@@ -111,7 +135,8 @@ class Corrector:
         if setup.kinematics is not self._solver.kinematics:
             self._solver = TickSolver(setup.kinematics, self._pacer.qp, NEWTON_STEPS)
         limiter = OffsetLimiter(correction_limits(motion.limits), setup.dt)
-        return Surroundings(self._solver, setup.weights, motion.free, limiter, self._rates)
+        clearance = self._pacer.clearance
+        return Surroundings(self._solver, setup.weights, motion.free, limiter, self._rates, clearance)
 
     def _begin(self, around: Surroundings) -> None:
         """Go on under what is in force now; a new tool has a correction of its own in the same posture."""
@@ -129,13 +154,38 @@ class Corrector:
 
     def _moved(self, row: PlannedRow, around: Surroundings) -> CorrectedRow:
         """The row after the one emitted last, as the sensor wants it."""
-        place = self._place(row)
-        answer = self._ask()
-        request = read_request(answer, self._tick + 1, around.kinematics.task, place)
-        self.tally.asked(request is not None)
-        if request is not None:
-            self._request = request
+        self._look(row.block)
+        if self._senses.ask is not None:
+            answer = self._senses.ask()
+            request = read_request(answer, self._tick + 1, around.kinematics.task, self._place(row))
+            self.tally.asked(request is not None)
+            if request is not None:
+                self._request = request
+        around = self._from_now(around)
         return self._emitted(corrected_tick(self._now, row, self._request, around), around)
+
+    def _look(self, block: Block | None) -> None:
+        """Once for each tick, see where obstacles are in it."""
+        setup = self._pacer.setup
+        if self._senses.look is None or setup.scene.sightings is None or self._looked_at == self._tick:
+            return
+        self._looked_at = self._tick
+        place = self._pacer.locate(block.origin) if block is not None else None
+        found = read_placements(self._senses.look(), self._tick + 1, setup.scene, place)
+        self.nearness.asked(len(found))
+        sightings, obstacles = setup.scene.sightings, setup.scene.obstacles
+        sightings.begin_tick()
+        for one in found:
+            own = way_of(obstacles[one.name.casefold()])
+            known = sightings.pose(one.name, (self._tick + 1) * setup.dt, own)
+            rotation = known.rotation if one.rotation is None else pin.exp3(one.rotation)
+            sightings.place(one.name, pin.SE3(rotation, one.position))
+
+    def _from_now(self, around: Surroundings) -> Surroundings:
+        """The same from this tick on."""
+        if around.clearance is None:
+            return around
+        return around._replace(clearance=around.clearance.beginning(self._tick * around.limiter.dt))
 
     def _made_fit(self, motion: PlannedMotion, around: Surroundings) -> Iterator[CorrectedRow]:
         """Rows in which the robot stands until its offset is one that the motion can begin with."""
@@ -179,9 +229,11 @@ class Corrector:
         """A row more than planned: the plan stands."""
         if self._around is None:
             raise RuntimeError("nothing has moved yet")
+        self._look(self._now.row.block)
         self._pacer.tick += 1
         self.tally.held()
-        return self._emitted(tick(self._now.row.standing(), self._around), self._around)
+        around = self._from_now(self._around)
+        return self._emitted(tick(self._now.row.standing(), around), around)
 
     def _emitted(self, corrected: Corrected, around: Surroundings) -> CorrectedRow:
         self._now, self._tick = corrected, self._tick + 1
@@ -196,7 +248,9 @@ class Corrector:
         missing = self._request - corrected.correction
         self.tally.ended(missing, self._tick, block.origin.line, corrected.governor, corrected.refused)
         rotation, position = kinematics.tool_pose(corrected.q)
-        return CorrectedRow(corrected.q, rotation, position, block, corrected.correction)
+        clearance, place = self._from_now(around).clearance, self._pacer.locate(block.origin)
+        nearest = self.nearness.ended(clearance, corrected.q, self._tick, place)
+        return CorrectedRow(corrected.q, rotation, position, block, corrected.correction, nearest)
 
     def _place(self, row: PlannedRow) -> Place:
         if row.block is None:

@@ -12,7 +12,8 @@ class Lag:
     """How far a correction was behind its request, `value` in m or rad, at its worst: tick and line.
 
     `joint` and `bound` ('position', 'speed', 'acceleration', 'braking') are what kept it there; joint '' and
-    bound 'tool speed' or 'tool acceleration' where the cell's [motion] did. Both are '' where the robot had
+    bound 'tool speed' or 'tool acceleration' where the cell's [motion] did, 'clearance' where something would
+    have come too near. Both are '' where the robot had
     to stand first.
     """
 
@@ -29,9 +30,9 @@ class CorrectionReport:
 
     `ticks` at which the sensor was asked, `requests` it answered with a correction; `delayed_ticks` at whose
     end the correction was more than 1e-6 m or rad from the request; `refused_ticks`: those of them at which
-    the joints could not follow as fast as a correction was meant to run; `held_ticks` that the robot stood
-    longer than programmed so that corrections came to rest. `position_lag` and `orientation_lag`: the largest
-    ones, None where there was none.
+    the joints could not follow as fast as a correction was meant to run, or something was in the way;
+    `held_ticks` that the robot stood longer than programmed so that corrections came to rest.
+    `position_lag` and `orientation_lag`: the largest ones, None where there was none.
     """
 
     ticks: int = 0

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.pacing.correction.approach import TOOL, Governor
+from irlx.pacing.correction.approach import TOO_NEAR, TOOL, Governor
 from irlx.pacing.correction.report import BOUND_WORDS, CorrectionReport, Lag
 from irlx.pacing.correction.tool_offset import parts
 
@@ -56,5 +56,7 @@ class Tally:
     def _words(self, governor: Governor | None) -> tuple[str, str]:
         if governor is None:
             return "", ""
+        if governor == TOO_NEAR:
+            return "", "clearance"
         word = BOUND_WORDS[governor.source]
         return ("", f"tool {word}") if governor.joint == TOOL else (self._names[governor.joint], word)
