@@ -56,16 +56,17 @@ def _head(header: StreamHeader) -> bytes:
     return b"".join([*lines, column_line(header)])
 
 
-def column_line(header: StreamHeader) -> bytes:
-    """Names of the columns; line breaks and other control characters in joint names become blanks.
-
-    The comment lines have the names as they are.
-    """
+def column_names(header: StreamHeader) -> list[str]:
+    """Names of the columns; line breaks and other control characters in joint names become blanks."""
     names = ["".join(c if c.isprintable() else " " for c in name) for name in header.joint_names]
     joints = [f"{prefix}_{name}" for prefix in ("q", "qd", "qdd") for name in names]
+    return ["tick", "t", "block", *joints, *(f"tool_{part}" for part in _TOOL)]
+
+
+def column_line(header: StreamHeader) -> bytes:
+    """Line with the names of the columns; the comment lines have the names of joints as they are."""
     line = io.StringIO()
-    columns = ["tick", "t", "block", *joints, *(f"tool_{part}" for part in _TOOL)]
-    csv.writer(line, lineterminator="\n").writerow(columns)
+    csv.writer(line, lineterminator="\n").writerow(column_names(header))
     return line.getvalue().encode("utf-8", "backslashreplace")
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from irlx.diagnostics import report
+from irlx.streams.atomic import check_writable
 from irlx.streams.csv_reader import scan_csv
 from irlx.streams.csv_writer import CsvWriter
 from irlx.streams.error import StreamError
@@ -17,19 +18,24 @@ from irlx.streams.jsonl_reader import scan_jsonl
 from irlx.streams.jsonl_writer import JsonlWriter
 from irlx.streams.npz_reader import scan_npz
 from irlx.streams.npz_writer import NpzWriter
+from irlx.streams.parquet import check_parquet, parquet_writer, scan_parquet
 from irlx.streams.scan import RowBatch, ScanItem, StreamEnd, collect, in_order
 from irlx.streams.writer import StreamWriter
 
 
 @dataclass(frozen=True)
 class StreamFormat:
-    """One format: its file ending, a title for people, writer and scanner, and whether blocks survive."""
+    """One format: its file ending, a title for people, writer and scanner, and whether blocks survive.
+
+    `check` raises what writing to a path would raise at once, and leaves no trace.
+    """
 
     ending: str
     title: str
     writer: Callable[[Path, StreamHeader], StreamWriter]
     scan: Callable[[Path], Iterator[ScanItem]]
     carries_blocks: bool
+    check: Callable[[Path], None] = check_writable
 
 
 FORMATS = {
@@ -39,6 +45,7 @@ FORMATS = {
         StreamFormat(".csv", "CSV", CsvWriter, scan_csv, carries_blocks=False),
         StreamFormat(".npz", "NPZ", NpzWriter, scan_npz, carries_blocks=True),
         StreamFormat(".jsonl", "JSON Lines", JsonlWriter, scan_jsonl, carries_blocks=True),
+        StreamFormat(".parquet", "Parquet", parquet_writer, scan_parquet, True, check_parquet),
     )
 }
 """Every format by its ending, lower case with the dot."""

@@ -40,4 +40,5 @@ STREAM: tuple[Code, ...] = (
         "the stream fails the check '{check}': {finding}",
         "run the program again with this irlx; if it fails again, please report it with program and cell",
     ),
+    error("IRL720", "{path}: {title} needs {package}: {command}"),
 )
