@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
+import platform
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
+from importlib.metadata import version
 from math import inf
 from pathlib import Path
 from typing import IO, Any
@@ -30,6 +34,7 @@ from irlx.robot.equality import Constraint, LinearConstraint
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.registered_constraints import registered_constraints
 from irlx.streams.joint_stream import FORMAT_VERSION, StreamHeader
+from irlx.streams.making import Making
 
 PathLike = str | os.PathLike[str]
 InputsGiven = InputFunction | Mapping[str, Sequence[tuple[float, float]]] | PathLike | None
@@ -45,7 +50,7 @@ class Job:
 
     A move may take `max_slow` times as long as programmed, the program may execute `max_steps` statements;
     `inputs` are the cell's with those of the caller; `channels` what the program may read and write; `pauses`
-    say how long each PAUSE lasts.
+    say how long each PAUSE lasts; `making` is what the stream will say of all this.
     """
 
     program: Program
@@ -56,6 +61,7 @@ class Job:
     inputs: Inputs = field(default_factory=Inputs)
     channels: ChannelSetup = field(default_factory=ChannelSetup)
     pauses: Pauses = field(default_factory=Pauses)
+    making: Making = field(default_factory=Making)
 
 
 def prepare(
@@ -90,7 +96,16 @@ def prepare(
     if not is_time(pause_s):
         cause = "a pause lasts a number of seconds, 0 or more"
         raise IrlxError(report("IRL006", option="--pause", value=f"{pause_s:g}", cause=cause))
-    more = _channels(program, loaded, files, input, output), Pauses(pause_s, on_pause)
+    making = Making(
+        cell_sha256=sha256_of(Path(loaded.file)),
+        max_slow=None if max_slow is None else float(max_slow),
+        max_steps=max_steps,
+        pause=float(pause_s),
+        **_inputs_told(inputs),
+        software=software(),
+        given=_untold(inputs=inputs, input=input, files=files, on_pause=on_pause),
+    )
+    more = _channels(program, loaded, files, input, output), Pauses(pause_s, on_pause), making
     if tick_ms is None:
         return Job(program, loaded, loaded.tick_ns, slowest, steps, said, *more)
     if not LEAST_TICK_MS <= tick_ms <= LONGEST_TICK_MS:
@@ -113,6 +128,40 @@ def _channels(
     own |= {module.path: "a module of the program" for module in program.modules}
     own |= {program.path: "the program itself", Path(cell.file): "the cell of the program"}
     return ChannelSetup(folder, own, input, output.write if output is not None else None)
+
+
+def sha256_of(path: Path) -> str:
+    """SHA-256, hexadecimal, of the bytes of a file that has just been read; '' where it is gone by now."""
+    try:
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except OSError:
+        return ""
+
+
+def _inputs_told(inputs: InputsGiven) -> dict[str, str]:
+    """What a stream says of a file of inputs."""
+    if not isinstance(inputs, str | os.PathLike):
+        return {}
+    path = Path(inputs)
+    return {"inputs": path.name, "inputs_sha256": sha256_of(path)}
+
+
+def _untold(
+    inputs: InputsGiven, input: InputGiven, files: PathLike | None, on_pause: object
+) -> tuple[str, ...]:
+    """Names of what a caller gave that no stream can hold."""
+    told = inputs is None or isinstance(inputs, str | os.PathLike)
+    given = {"inputs": not told, "input": isinstance(input, str), "files": files is not None}
+    given["on_pause"] = on_pause is not None
+    return tuple(name for name, holds in given.items() if holds)
+
+
+@cache
+def software() -> tuple[str, ...]:
+    """What the numbers of a stream depend on, with versions."""
+    names = ("numpy", "scipy", "pin", "proxsuite")
+    found = [f"{name} {version(name)}" for name in names]
+    return (f"python {platform.python_version()}", *found, f"machine {platform.machine()}")
 
 
 def inputs_of(cell: Cell, given: InputsGiven) -> Inputs:
@@ -190,4 +239,5 @@ def header_of(job: Job) -> StreamHeader:
         tick_ns=job.tick_ns,
         limits=cell.limits,
         weights=tuple(float(weight) for weight in cell.weights),
+        making=job.making,
     )

@@ -44,7 +44,7 @@ def add_parser(commands: Any) -> None:
         action="append",
         default=[],
         metavar="OUT",
-        help="stream file, format by its ending: .irdata, .npz or .csv; may be given several times "
+        help="stream file, format by its ending: .irdata, .npz, .jsonl or .csv; may be given several times "
         "(default: P.irdata beside the program, or in the working folder)",
     )
     parser.add_argument("--tick", type=float, metavar="MS", help="duration of a tick (default: the cell's)")

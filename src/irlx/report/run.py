@@ -85,7 +85,7 @@ class Run:
         return self.stream.complete
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the stream in the format of the path's ending: .irdata, .npz or .csv.
+        """Write the stream in the format of the path's ending: .irdata, .npz, .jsonl or .csv.
 
         The file appears whole or not at all. Raises StreamError: IRL003 not writable, IRL004 unknown ending.
         """

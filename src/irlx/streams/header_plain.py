@@ -10,6 +10,7 @@ import numpy as np
 from irlx.blocks.codec import BlockFormError, block_from_plain, block_to_plain
 from irlx.robot.limits import JointLimits
 from irlx.streams.joint_stream import FORMAT_VERSION, BlockRecord, Floats, StreamHeader
+from irlx.streams.making import Making
 
 LIMIT_SIDES = (
     "position_lower",
@@ -59,27 +60,31 @@ def header_to_plain(header: StreamHeader) -> dict[str, Any]:
         "tick_ns": header.tick_ns,
         "limits": {side: _bounds_to_plain(getattr(header.limits, side)) for side in LIMIT_SIDES},
         "weights": list(header.weights),
+        **({} if header.format_version == 1 else {"making": header.making.to_plain()}),
     }
 
 
 def header_from_plain(plain: object) -> StreamHeader:
     """Header of what `header_to_plain` gives; raises PlainFormError (VersionError for other versions)."""
     fields = _dictionary(plain, "header")
-    check_version(_typed(fields, "format_version", int))
+    version = _typed(fields, "format_version", int)
+    check_version(version)
     limits = _dictionary(fields.get("limits"), "limits")
     sides = {side: _bounds(limits.get(side), f"limits.{side}") for side in LIMIT_SIDES}
     known = {"format_version", *_TEXTS, "joint_names", "joint_units", "tick_ns", "limits", "weights"}
+    known |= {"making"} if version > 1 else set()
     for key in [*(fields.keys() - known), *(limits.keys() - set(LIMIT_SIDES))]:
         raise PlainFormError(f"{key}: a header has no such entry")
     try:
         return StreamHeader(
-            format_version=FORMAT_VERSION,
+            format_version=version,
             **{name: _typed(fields, name, str) for name in _TEXTS},
             joint_names=_texts(fields, "joint_names"),
             joint_units=_texts(fields, "joint_units"),
             tick_ns=_tick(fields),
             limits=JointLimits(**sides),
             weights=tuple(map(float, _bounds(fields.get("weights"), "weights"))),
+            making=Making.from_plain(fields.get("making")) if version > 1 else Making(),
         )
     except PlainFormError:
         raise
@@ -88,8 +93,8 @@ def header_from_plain(plain: object) -> StreamHeader:
 
 
 def check_version(version: int) -> None:
-    """Raises VersionError for a format version other than the one that this irlx reads."""
-    if version != FORMAT_VERSION:
+    """Raises VersionError for a format version that this irlx does not read."""
+    if not 1 <= version <= FORMAT_VERSION:
         raise VersionError(version)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 
 from irlx.blocks import Block
 from irlx.robot.limits import JointLimits
+from irlx.streams.making import Making
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-FORMAT_VERSION = 1
-"""Version of the stream's content that this irlx writes; readers refuse others."""
+FORMAT_VERSION = 2
+"""Version of the stream's content that this irlx writes; readers take it and all before it."""
 
 JOINT_UNITS = ("rad", "m")
 
@@ -25,7 +26,8 @@ class StreamHeader:
     """Where a stream comes from and what its numbers mean.
 
     `cell_name` is the file name of the cell ('' if none), `robot_model` the packaged name or URDF
-    path as the cell gives it, `robot_fingerprint` that of `RobotDescription`. Of n joints:
+    path as the cell gives it, `robot_fingerprint` that of `RobotDescription`, `making` how the run was
+    made, of which files of version 1 say nothing. Of n joints:
     `joint_names`, `joint_units` ('rad' or 'm'), `limits` (the robot's own) and `weights`. A tick
     lasts `tick_ns` nanoseconds. Headers hold arrays: compare `header_to_plain` of them.
     """
@@ -44,6 +46,7 @@ class StreamHeader:
     tick_ns: int
     limits: JointLimits
     weights: tuple[float, ...]
+    making: Making = field(default_factory=Making)
 
     def __post_init__(self) -> None:
         joints = len(self.joint_names)

@@ -26,7 +26,7 @@ STREAM: tuple[Code, ...] = (
     ),
     error(
         "IRL706",
-        "the file has format version {found}; this irlx reads version {known}",
+        "the file has format version {found}; this irlx reads versions 1 to {known}",
         "read it with the irlx version that wrote it, or run the program again",
     ),
     error("IRL707", "{path}: no stream format has the ending '{ending}'; known: {known}"),

@@ -9,6 +9,7 @@ from irlx.streams.header_plain import LIMIT_SIDES, check_version, header_from_pl
 from irlx.streams.irdata import codes
 from irlx.streams.irdata.record import Record, RecordError, Value
 from irlx.streams.joint_stream import StreamHeader
+from irlx.streams.making import Making
 
 TITLE = "IRDATA-like joint stream"
 
@@ -17,6 +18,7 @@ _LAYOUT: tuple[tuple[int, dict[str, str]], ...] = (
     (codes.SOFTWARE, {"irlx": "irlx_version"}),
     (codes.PROGRAM, {"program": "program_name", "sha256": "program_sha256"}),
     (codes.CELL, {"cell": "cell_name"}),
+    (codes.MAKING, {name: f"making.{name}" for name in Making.__dataclass_fields__}),
     (
         codes.ROBOT,
         {"robot": "robot_name", "model": "robot_model", "fingerprint": "robot_fingerprint", "tip": "tip"},
@@ -26,11 +28,18 @@ _LAYOUT: tuple[tuple[int, dict[str, str]], ...] = (
 """Records before those of the joints: code, and of each operand the header's entry ('' if none)."""
 
 
+def _layout_of(version: int) -> tuple[tuple[int, dict[str, str]], ...]:
+    """The layout of a format version."""
+    return _LAYOUT if version > 1 else tuple(entry for entry in _LAYOUT if entry[0] != codes.MAKING)
+
+
 def header_records(header: StreamHeader) -> list[tuple[int, dict[str, Value]]]:
     """Code and operands of every record of a header, in order."""
     plain = header_to_plain(header)
     plain[""] = None
-    records = [(code, {name: plain[entry] for name, entry in layout.items()}) for code, layout in _LAYOUT]
+    plain |= {f"making.{name}": value for name, value in header.making.to_plain().items()}
+    layouts = _layout_of(header.format_version)
+    records = [(code, {name: plain[entry] for name, entry in layout.items()}) for code, layout in layouts]
     records[0][1]["title"] = TITLE
     records[-1][1]["joints"] = header.joints
     for joint in range(header.joints):
@@ -54,11 +63,12 @@ class HeaderParser:
         self._joints: list[dict[str, Value]] = []
         self._count = 0
         self._position = 0
+        self._layout = _LAYOUT
 
     def add(self, record: Record) -> None:
         """Take the next record; raises RecordError, or PlainFormError where the entries do not fit."""
-        in_layout = self._position < len(_LAYOUT)
-        code, layout = _LAYOUT[self._position] if in_layout else (codes.JOINT, {})
+        in_layout = self._position < len(self._layout)
+        code, layout = self._layout[self._position] if in_layout else (codes.JOINT, {})
         if record.code != code:
             raise RecordError(f"a record of code {code} is due here, found {record.code}")
         fields = record.fields()
@@ -68,7 +78,7 @@ class HeaderParser:
             _same_names(fields, ("name", "unit", "weight", *LIMIT_SIDES))
             self._joints.append(fields)
         self._position += 1
-        if self._position >= len(_LAYOUT) and len(self._joints) == self._count:
+        if self._position >= len(self._layout) and len(self._joints) == self._count:
             self._finish()
 
     def _take(self, fields: dict[str, Value], layout: dict[str, str]) -> None:
@@ -86,9 +96,13 @@ class HeaderParser:
         version = fields.get("version")
         if type(version) is int:
             check_version(version)
+            self._layout = _layout_of(version)
 
     def _finish(self) -> None:
         joints = self._joints
+        making = {name: self._plain.pop(f"making.{name}", None) for name in Making.__dataclass_fields__}
+        if self._plain["format_version"] != 1:
+            self._plain["making"] = making
         plain = {
             **self._plain,
             "joint_names": [joint["name"] for joint in joints],
