@@ -10,8 +10,9 @@ import pytest
 from irlx.streams import KNOWN_ENDINGS, JointStream, StreamError, read_stream, write_stream
 from irlx.streams.atomic import AtomicFile, check_writable
 from irlx.streams.header_plain import header_to_plain
+from stream_files import FOLDERS, content_of
 
-WITH_BLOCKS = (".irdata", ".npz", ".jsonl")
+WITH_BLOCKS = tuple(ending for ending in KNOWN_ENDINGS if ending != ".csv")
 
 
 def awkward(kit) -> JointStream:
@@ -51,7 +52,7 @@ def test_round_trip(ending: str, good: JointStream, tmp_path: Path) -> None:
 
 @pytest.mark.filterwarnings("ignore:overflow encountered:RuntimeWarning")
 @pytest.mark.filterwarnings("ignore:invalid value encountered:RuntimeWarning")
-@pytest.mark.parametrize("ending", [".irdata", ".npz"])
+@pytest.mark.parametrize("ending", [".irdata", ".npz", ".parquet", ".rosbag"])
 def test_awkward_values_and_names(ending: str, gantry_kit, tmp_path: Path) -> None:
     stream = awkward(gantry_kit)
     write_stream(stream, tmp_path / f"a{ending}")
@@ -80,7 +81,7 @@ def test_incomplete_and_empty_streams(ending: str, good: JointStream, tmp_path: 
 def test_same_stream_same_bytes(ending: str, good: JointStream, tmp_path: Path) -> None:
     for name in ("a", "b"):
         write_stream(good, tmp_path / f"{name}{ending}")
-    assert (tmp_path / f"a{ending}").read_bytes() == (tmp_path / f"b{ending}").read_bytes()
+    assert content_of(tmp_path / f"a{ending}") == content_of(tmp_path / f"b{ending}")
 
 
 @pytest.mark.req("STR-04")
@@ -117,11 +118,12 @@ def test_unwritable(ending: str, where: str, code: str, good: JointStream, tmp_p
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root writes everywhere")
-def test_read_only_folder(good: JointStream, tmp_path: Path) -> None:
+@pytest.mark.parametrize("ending", KNOWN_ENDINGS)
+def test_read_only_folder(ending: str, good: JointStream, tmp_path: Path) -> None:
     tmp_path.chmod(0o500)
     try:
         with pytest.raises(StreamError) as caught:
-            write_stream(good, tmp_path / "a.irdata")
+            write_stream(good, tmp_path / f"a{ending}")
     finally:
         tmp_path.chmod(0o700)
     assert caught.value.reason.code == "IRL003"
@@ -131,7 +133,11 @@ def test_read_only_folder(good: JointStream, tmp_path: Path) -> None:
 def test_full_disk_leaves_nothing(
     ending: str, good: JointStream, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (tmp_path / f"a{ending}").write_text("before")
+    if ending in FOLDERS:
+        write_stream(good, tmp_path / f"a{ending}")
+    else:
+        (tmp_path / f"a{ending}").write_text("before")
+    before = content_of(tmp_path / f"a{ending}")
 
     def full(_: int) -> None:
         raise OSError(28, "No space left on device")
@@ -140,7 +146,7 @@ def test_full_disk_leaves_nothing(
     with pytest.raises(StreamError) as caught:
         write_stream(good, tmp_path / f"a{ending}")
     assert "no space left" in str(caught.value)
-    assert [path.read_text() for path in tmp_path.iterdir()] == ["before"]
+    assert [content_of(path) for path in tmp_path.iterdir()] == [before]
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
@@ -157,7 +163,8 @@ def test_a_failing_write_is_coded(tmp_path: Path) -> None:
 def test_unreadable(ending: str, good: JointStream, tmp_path: Path) -> None:
     write_stream(good, tmp_path / f"weld{ending}")
     (tmp_path / f"folder{ending}").mkdir()
-    for name, code in ((f"wled{ending}", "IRL001"), (f"folder{ending}", "IRL007"), (f"\0{ending}", "IRL002")):
+    of_folder = "IRL701" if ending in FOLDERS else "IRL007"
+    for name, code in ((f"wled{ending}", "IRL001"), (f"folder{ending}", of_folder), (f"\0{ending}", "IRL002")):
         with pytest.raises(StreamError) as caught:
             read_stream(tmp_path / name)
         assert caught.value.reason.code == code

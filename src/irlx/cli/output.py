@@ -11,8 +11,8 @@ from irlx.diagnostics.text import render_text
 
 _COLOURS = {"error": "\x1b[1;31m", "warning": "\x1b[1;33m", "info": "\x1b[1;36m"}
 _PLAIN = "\x1b[0m"
-_USAGE = frozenset({"IRL707"})
-"""Codes beyond IRL0xx and IRL6xx that say that a file was wrongly named, not that its content is wrong."""
+_USAGE = frozenset({"IRL707", "IRL720"})
+"""Codes beyond IRL0xx and IRL6xx that say that a file was wrongly named, or a package is missing."""
 
 
 def coloured(stream: object) -> bool:

@@ -154,24 +154,29 @@ def _prepared(options: argparse.Namespace, text: ProgramText) -> tuple[Job, list
 
 
 def output_paths(asked: list[str], program: Path, inputs: tuple[Path, ...]) -> list[Path]:
-    """Files to write, checked before anything moves.
+    """Files and folders to write, checked before anything moves.
 
-    Raises StreamError: IRL003 not writable, IRL004 unknown ending, IRL005 an input would be overwritten.
+    Raises StreamError: IRL003 not writable, IRL004 unknown ending, IRL005 an input would be overwritten,
+    IRL720 a package that the format needs is missing.
     """
     from irlx.diagnostics import report
-    from irlx.streams.atomic import check_writable
     from irlx.streams.error import StreamError
-    from irlx.streams.formats import KNOWN_ENDINGS
+    from irlx.streams.formats import format_of
 
     paths = [Path(name) for name in asked] or [_default_output(program)]
     for path in paths:
-        if path.suffix.lower() not in KNOWN_ENDINGS:
-            known = ", ".join(KNOWN_ENDINGS)
-            raise StreamError(report("IRL004", path=path, ending=path.suffix, known=known))
-        if any(path.exists() and source.exists() and path.samefile(source) for source in inputs):
+        known = format_of(path, "IRL004")
+        if any(_holds(path, source) for source in inputs):
             raise StreamError(report("IRL005", path=path))
-        check_writable(path)
+        known.check(path)
     return paths
+
+
+def _holds(path: Path, source: Path) -> bool:
+    """Whether an output is an input, or a folder that an input stands in."""
+    if not (path.exists() and source.exists()):
+        return False
+    return path.samefile(source) or source.resolve().is_relative_to(path.resolve())
 
 
 def _default_output(program: Path) -> Path:

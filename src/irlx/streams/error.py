@@ -56,7 +56,13 @@ def _words(cause: OSError | ValueError) -> str:
 
 def _near_files(path: Path) -> str:
     try:
-        names = sorted(entry.name for entry in path.parent.iterdir() if entry.is_file())
+        entries = [entry for entry in path.parent.iterdir() if entry.is_file() or _is_bag(entry)]
+        names = sorted(entry.name for entry in entries)
     except OSError:
         return ""
     return near_matches(path.name, names)
+
+
+def _is_bag(path: Path) -> bool:
+    """Whether a folder is a ROS 2 bag, which is read like a file."""
+    return (path / "metadata.yaml").is_file()

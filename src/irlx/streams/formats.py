@@ -19,6 +19,7 @@ from irlx.streams.jsonl_writer import JsonlWriter
 from irlx.streams.npz_reader import scan_npz
 from irlx.streams.npz_writer import NpzWriter
 from irlx.streams.parquet import check_parquet, parquet_writer, scan_parquet
+from irlx.streams.rosbag import check_rosbag, rosbag_writer, scan_rosbag
 from irlx.streams.scan import RowBatch, ScanItem, StreamEnd, collect, in_order
 from irlx.streams.writer import StreamWriter
 
@@ -46,6 +47,7 @@ FORMATS = {
         StreamFormat(".npz", "NPZ", NpzWriter, scan_npz, carries_blocks=True),
         StreamFormat(".jsonl", "JSON Lines", JsonlWriter, scan_jsonl, carries_blocks=True),
         StreamFormat(".parquet", "Parquet", parquet_writer, scan_parquet, True, check_parquet),
+        StreamFormat(".rosbag", "ROS 2 bag", rosbag_writer, scan_rosbag, True, check_rosbag),
     )
 }
 """Every format by its ending, lower case with the dot."""

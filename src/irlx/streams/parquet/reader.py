@@ -49,7 +49,9 @@ def scan(path: Path) -> Iterator[ScanItem]:
 
 
 def _items(path: Path, handle: IO[bytes]) -> Iterator[ScanItem]:
-    with pq.ParquetFile(handle, buffer_size=_BUFFER, page_checksum_verification=True) as file:
+    # Not buffered ahead: that takes whole row groups into memory.
+    options = {"buffer_size": _BUFFER, "pre_buffer": False, "page_checksum_verification": True}
+    with pq.ParquetFile(handle, **options) as file:
         texts = _texts(file)
         header = header_from_plain(json.loads(texts[HEADER]))
         records = json.loads(texts[RECORDS])
