@@ -186,12 +186,10 @@ ENDPROGRAM
     assert failed == ["complete"]
 
 
+KNOWN = ".irdata, .csv, .npz, .jsonl, .parquet, .rosbag"
 OUTPUTS = [
-    (
-        ["-o", "out.foo"],
-        "IRL004: -o out.foo: no format has the ending '.foo'; known: .irdata, .csv, .npz, .jsonl",
-    ),
-    (["-o", "out"], "IRL004: -o out: no format has the ending ''; known: .irdata, .csv, .npz, .jsonl"),
+    (["-o", "out.foo"], f"IRL004: -o out.foo: no format has the ending '.foo'; known: {KNOWN}"),
+    (["-o", "out"], f"IRL004: -o out: no format has the ending ''; known: {KNOWN}"),
     (["-o", "link.csv"], "IRL005: -o link.csv would overwrite an input of this run"),
     (["-o", "no/out.csv"], "IRL003: cannot write no/out.csv: no such file or directory"),
     (["-o", "p.irl/out.csv"], "IRL003: cannot write p.irl/out.csv: "),

@@ -164,7 +164,11 @@ def test_unreadable(ending: str, good: JointStream, tmp_path: Path) -> None:
     write_stream(good, tmp_path / f"weld{ending}")
     (tmp_path / f"folder{ending}").mkdir()
     of_folder = "IRL701" if ending in FOLDERS else "IRL007"
-    for name, code in ((f"wled{ending}", "IRL001"), (f"folder{ending}", of_folder), (f"\0{ending}", "IRL002")):
+    for name, code in (
+        (f"wled{ending}", "IRL001"),
+        (f"folder{ending}", of_folder),
+        (f"\0{ending}", "IRL002"),
+    ):
         with pytest.raises(StreamError) as caught:
             read_stream(tmp_path / name)
         assert caught.value.reason.code == code

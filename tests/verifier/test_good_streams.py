@@ -51,7 +51,7 @@ def outcome_of(seed: int, folder: Path) -> Outcome:
         run = irlx.run(program)
     except irlx.RunError as refused:
         run = refused.run
-    ending = KNOWN_ENDINGS[seed // len(ROBOTS) % len(KNOWN_ENDINGS)]
+    ending = KNOWN_ENDINGS[(seed + seed // len(ROBOTS)) % len(KNOWN_ENDINGS)]
     file = folder / f"drawn{ending}"
     run.save(file)
     cell = folder / "drawn.toml"

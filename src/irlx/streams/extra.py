@@ -17,7 +17,7 @@ def require(module: str, extra: str, path: Path, title: str) -> None:
     try:
         import_module(module)
     except ImportError as cause:
-        package, command = module.split(".")[0], f"pip install 'irlx[{extra}]'"
+        package, command = module.partition(".")[0], f"pip install 'irlx[{extra}]'"
         raise StreamError(
             report("IRL720", path=path, title=title, package=package, command=command)
         ) from cause

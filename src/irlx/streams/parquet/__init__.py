@@ -24,7 +24,10 @@ def parquet_writer(path: Path, header: StreamHeader) -> StreamWriter:
 
 
 def scan_parquet(path: str | os.PathLike[str]) -> Iterator[ScanItem]:
-    """Scan of a Parquet file; see `irlx.streams.parquet.reader`. Raises StreamError IRL720 without pyarrow."""
+    """Scan of a Parquet file; see `irlx.streams.parquet.reader`.
+
+    Raises StreamError IRL720 without pyarrow, at once.
+    """
     _require(Path(path))
     from irlx.streams.parquet.reader import scan
 

@@ -80,7 +80,7 @@ def _rows(path: Path, file: Any, header: StreamHeader, digest: Digest) -> Iterat
         digest.rows(bits)
         batch = rows_of(bits, header.joints)
         rows = rising_rows(batch.ticks, last)
-        good = np.isfinite(batch.q).all(axis=1) & np.isfinite(batch.tool).all(axis=1)
+        good = np.asarray(np.isfinite(batch.q).all(axis=1) & np.isfinite(batch.tool).all(axis=1))
         whole = rows if good[:rows].all() else int(np.argmin(good[:rows]))
         if whole:
             last = int(batch.ticks[whole - 1])

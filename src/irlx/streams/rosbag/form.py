@@ -78,7 +78,7 @@ class Form:
         return np.dtype({"names": names, "formats": kinds, "offsets": offsets, "itemsize": len(self)})
 
     def copies(self, rows: int, **values: Any) -> Bytes:
-        """Bytes (rows, length) of `rows` copies, `values` of the numbers by name: (rows,) or (rows, count)."""
+        """Bytes (rows, length) of copies with these `values` of the numbers: (rows,) or (rows, count)."""
         copies = np.tile(np.frombuffer(bytes(self._bytes), np.uint8), (rows, 1))
         fields = copies.view(self.kind)[:, 0]
         for name, value in values.items():
@@ -86,7 +86,7 @@ class Form:
         return copies
 
     def read(self, data: bytes) -> Any:
-        """Numbers of the copies that data are made of, as an array with fields; constants are not compared."""
+        """Numbers of the copies that data are made of, an array with fields; constants are not compared."""
         return np.frombuffer(data, self.kind)
 
     def _align(self, size: int) -> None:

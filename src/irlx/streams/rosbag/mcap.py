@@ -30,7 +30,7 @@ RECORD_HEAD = _RECORD.size
 """Length of a record's code and length."""
 
 CHUNK_HEAD = struct.Struct("<QQQIIQ")
-"""Head of a chunk without compression: first and last time, length, CRC, length of the compression's name (0),
+"""Head of a chunk without compression: first and last time, length, CRC, length 0 of the compression's name,
 length once more."""
 
 FOOTER = struct.Struct("<QQI")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import Any
 
 import numpy as np
 
@@ -60,8 +61,9 @@ class RowForm:
         pose = Form().begin().number("sec", "<i4").number("nanosec", "<u4").text(FRAME).numbers("tool", 7)
         block = Form().begin().number("block", "<i8")
         self._messages = (Topic.JOINT_STATES, state), (Topic.TOOL_POSE, pose), (Topic.BLOCK, block)
-        heads = [_message_head(topic, len(form)) for topic, form in self._messages]
-        self._parts = [part for head, (_, form) in zip(heads, self._messages, strict=True) for part in (head, form)]
+        self._parts: list[Form] = []
+        for topic, form in self._messages:
+            self._parts += [_message_head(topic, len(form)), form]
 
     def __len__(self) -> int:
         return sum(map(len, self._parts))
@@ -71,7 +73,8 @@ class RowForm:
         times = ticks * self._tick_ns
         head = {"log": times, "publish": times}
         stamp = {"sec": times // SECOND, "nanosec": times % SECOND}
-        values = head, {**stamp, "q": q, "qd": qd}, head, {**stamp, "tool": tool}, head, {"block": block}
+        state, pose, of_block = {**stamp, "q": q, "qd": qd}, {**stamp, "tool": tool}, {"block": block}
+        values: list[dict[str, Any]] = [head, state, head, pose, head, of_block]
         pairs = zip(self._parts, values, strict=True)
         return np.concatenate([form.copies(len(ticks), **given) for form, given in pairs], axis=1)
 
@@ -93,7 +96,7 @@ class RowForm:
         )
         ticks = (head["log"] // self._tick_ns).astype(np.int64)
         rows = ticks, state["q"].copy(), state["qd"].copy(), block["block"].copy(), pose["tool"].copy()
-        if ticks.size and not (0 <= ticks.min() and int(ticks.max()) * self._tick_ns < LONGEST_TIME_NS):
+        if ticks.size and not (ticks.min() >= 0 and int(ticks.max()) * self._tick_ns < LONGEST_TIME_NS):
             raise ValueError("a time is out of range")
         if not np.array_equal(self.records(*rows), raw):
             raise ValueError("messages of a row have another form than irlx gives them")

@@ -5,8 +5,9 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
-from typing import IO
+from typing import IO, cast
 
 import numpy as np
 
@@ -56,7 +57,7 @@ class Trajectories:
         """Take rows; gives every trajectory that they end. It is to be closed by `close`."""
         moves = (qd != 0).any(axis=1)
         edges = [0, *(np.flatnonzero(moves[1:] != moves[:-1]) + 1).tolist(), len(ticks)]
-        for begin, end in zip(edges[:-1], edges[1:], strict=True):
+        for begin, end in pairwise(edges):
             if begin == end:
                 continue
             if moves[begin]:
@@ -81,8 +82,10 @@ class Trajectories:
     def _begin(self) -> None:
         # The first row of a stream has no velocity: before every motion a row at rest is known.
         assert self._still is not None
-        spool = tempfile.SpooledTemporaryFile(_IN_MEMORY, dir=self._folder)
-        self._open = Trajectory(self._form, int(self._still[0][0]) * self._tick_ns, spool)
+        start_ns = int(self._still[0][0]) * self._tick_ns
+        # Closed with the trajectory, which outlives this call.
+        spool = tempfile.SpooledTemporaryFile(_IN_MEMORY, dir=str(self._folder))  # noqa: SIM115
+        self._open = Trajectory(self._form, start_ns, cast("IO[bytes]", spool))
         self._add(*self._still)
 
     def _add(self, ticks: Integers, q: Floats, qd: Floats) -> None:
