@@ -27,6 +27,7 @@ ORDER = (
 WIRING = {
     "job",
     "pipeline",
+    "running",
     "program",
     "checking",
     "dry_run",

@@ -18,7 +18,7 @@ from irlx.cli.program_text import ProgramText
 if TYPE_CHECKING:
     from irlx.diagnostics import Diagnostic
     from irlx.job import Job
-    from irlx.report.run import Run
+    from irlx.report.outcome import Outcome
 
 _EXAMPLE = """\
 examples:
@@ -86,31 +86,30 @@ def command(options: argparse.Namespace) -> int:
 
     text = ProgramText()
     job, outputs = _prepared(options, text)
-    from irlx.pipeline import Execution, execute
+    from irlx.pipeline import Execution
     from irlx.report.run import RunError, RunInterrupted
+    from irlx.running import execute_to_files
 
     execution = Execution(job)
     try:
         with _progress(options) as progress:
             text.first = getattr(progress, "silence", None)
-            run = execute(execution, progress, options.explain_tick)
+            run = execute_to_files(execution, outputs, progress, options.explain_tick)
     except RunError as error:
         text.end_line()
         print_diagnostics(error.diagnostics)
         if not options.json:
             _print_tick(error.run, options)
-        _keep_partial(error.run, outputs, options)
+        _tell_partial(error.run, outputs, options)
         return exit_code(error.diagnostics)
     except RunInterrupted as interrupt:
         text.end_line()
         print("irlx: interrupted", file=sys.stderr)
-        _keep_partial(interrupt.run, outputs, options)
+        _tell_partial(interrupt.run, outputs, options)
         return 130
     if not options.quiet:
         text.end_line()
         print_diagnostics(run.diagnostics)
-    for path in outputs:
-        run.save(path)
     reports = {} if options.no_verify else {str(path): _verified(path, job) for path in outputs}
     broken = [found for name, report in reports.items() for found in report.diagnostics(name)]
     print_diagnostics(broken)
@@ -189,18 +188,15 @@ def _progress(options: argparse.Namespace) -> AbstractContextManager[Any]:
     return LiveProgress()
 
 
-def _partial(path: Path) -> Path:
-    """Name of a stream that is not complete."""
-    return path.with_name(f"{path.stem}.partial{path.suffix}")
-
-
 def _written(outputs: list[Path]) -> tuple[Path, ...]:
     """Every file that a run may write by itself."""
-    return (*outputs, *map(_partial, outputs))
+    from irlx.report.file_recording import partial_name
+
+    return (*outputs, *map(partial_name, outputs))
 
 
-def _keep_partial(run: Run, outputs: list[Path], options: argparse.Namespace) -> None:
-    """Write what was executed under names of its own: the asked names only ever hold complete streams."""
+def _tell_partial(run: Outcome, outputs: list[Path], options: argparse.Namespace) -> None:
+    """Say where what was executed is: the asked names only ever hold complete streams."""
     from irlx.cli.output import encodable
 
     for path in outputs:
@@ -208,12 +204,9 @@ def _keep_partial(run: Run, outputs: list[Path], options: argparse.Namespace) ->
             print(
                 encodable(f"irlx: {path} is left as it was, from an earlier run", sys.stderr), file=sys.stderr
             )
-    if run.t.size > 1:
-        for path in outputs:
-            partial = _partial(path)
-            run.save(partial)
-            words = f"the stream up to the last stop ({run.t[-1]:.6g} s), marked incomplete: {partial}"
-            print(encodable(f"irlx: {words}", sys.stderr), file=sys.stderr)
+    for path in run.files:
+        words = f"the stream up to the last stop ({run.summary.duration:.6g} s), marked incomplete: {path}"
+        print(encodable(f"irlx: {words}", sys.stderr), file=sys.stderr)
     if options.json:
         plain = {
             "summary": run.summary.to_plain(),
@@ -223,13 +216,15 @@ def _keep_partial(run: Run, outputs: list[Path], options: argparse.Namespace) ->
         print(json.dumps(plain, indent=2))
 
 
-def _print_tick(run: Run, options: argparse.Namespace) -> None:
+def _print_tick(run: Outcome, options: argparse.Namespace) -> None:
     from irlx.cli.output import encodable
     from irlx.report.tick_text import tick_text
 
     if options.explain_tick is None:
         return
-    words = f"tick {options.explain_tick}: no motion has it; motions have ticks 1 to {len(run.t) - 1}"
+    words = (
+        f"tick {options.explain_tick}: no motion has it; motions have ticks 1 to {run.summary.samples - 1}"
+    )
     if run.explanation is not None:
         words = tick_text(run.explanation)
     print(encodable(words, sys.stdout) + "\n")
@@ -248,7 +243,7 @@ def _verified(path: Path, job: Job) -> Any:
 
 
 def _print_summary(
-    run: Run,
+    run: Outcome,
     outputs: list[Path],
     reports: dict[str, Any],
     broken: list[Diagnostic],
@@ -270,7 +265,7 @@ def _print_summary(
         return
     _print_tick(run, options)
     if not options.quiet:
-        words = summary_text(run.summary, run.stream.header.joint_units, run.joint_names)
+        words = summary_text(run.summary, run.header.joint_units, run.joint_names)
         print(encodable(words, sys.stdout))
         for path in outputs:
             print(encodable(f"{'written':<12}{path}", sys.stdout))
