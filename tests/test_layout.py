@@ -28,6 +28,8 @@ WIRING = {
     "job",
     "pipeline",
     "running",
+    "recorded",
+    "reproduction",
     "program",
     "checking",
     "dry_run",

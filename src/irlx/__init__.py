@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from irlx.registration import register
     from irlx.report.outcome import Outcome
     from irlx.report.run import Run, RunError, RunInterrupted
+    from irlx.reproduction import Reproduction, reproduce
     from irlx.robot.equality import Constraint
     from irlx.running import record, run, stream
     from irlx.streams.error import StreamError
@@ -38,6 +39,7 @@ _HOMES = {
     "Outcome": "irlx.report.outcome",
     "Program": "irlx.program",
     "ProgramError": "irlx.program",
+    "Reproduction": "irlx.reproduction",
     "Report": "irlx.verifier.findings.report",
     "Run": "irlx.report.run",
     "RunError": "irlx.report.run",
@@ -49,6 +51,7 @@ _HOMES = {
     "load": "irlx.program",
     "record": "irlx.running",
     "register": "irlx.registration",
+    "reproduce": "irlx.reproduction",
     "run": "irlx.running",
     "stream": "irlx.running",
     "verify": "irlx.verification",
@@ -65,6 +68,7 @@ __all__ = [
     "Program",
     "ProgramError",
     "Report",
+    "Reproduction",
     "Run",
     "RunError",
     "RunInterrupted",
@@ -76,6 +80,7 @@ __all__ = [
     "load",
     "record",
     "register",
+    "reproduce",
     "run",
     "stream",
     "verify",

@@ -7,14 +7,13 @@ from collections.abc import Generator, Iterator, Sequence
 from contextlib import closing
 from dataclasses import replace
 from math import radians
-from pathlib import PurePath
 
 import numpy as np
 from numpy.typing import NDArray
 
 from irlx.blocks import AskPause, AskStandstill, Block, Origin, Question
 from irlx.cell.setting import setting_of
-from irlx.diagnostics import Diagnostic, IrlxError, Place, Span, report
+from irlx.diagnostics import Diagnostic, IrlxError, Place, report
 from irlx.interpreter.channels.channels import Channels, Told
 from irlx.interpreter.interpret import Interpretation
 from irlx.job import Job, header_of, kinematics_of
@@ -31,6 +30,7 @@ from irlx.pacing.pacer import Pacer
 from irlx.pacing.pauses import PauseAborted
 from irlx.pacing.resolution import EVERY_TICK, Resolution
 from irlx.pacing.situation import PacingSetup
+from irlx.recorded import Recorded
 from irlx.scene.sightings import Sightings
 from irlx.streams.atomic import AtomicFile
 from irlx.streams.joint_stream import StreamHeader
@@ -68,11 +68,9 @@ class Execution:
         )
         self.kinematics = setup.kinematics
         self._pacer = Pacer(setup, self._locate)
-        texts = (job.program.source, *(module.source for module in job.program.modules))
         self._interpretation: Interpretation | None = None
         self.left_open: list[Diagnostic] = []
         self.channels = job.channels.on_disk()
-        self._texts = {PurePath(text.name).name: text for text in texts}
 
     def __iter__(self) -> Iterator[Executed]:
         """Execute the program block by block. Raises IrlxError where it cannot go on (IRL090: by a fault)."""
@@ -183,6 +181,8 @@ class Execution:
 
     def _program(self, channels: Channels) -> Generator[Block | Question, tuple[float, ...] | None, None]:
         job, program = self.job, self.job.program
+        if isinstance(program, Recorded):
+            return program.replayed(job.inputs, job.cell)
         setting = setting_of(job.cell)
         ready = Interpretation(
             program.tree,
@@ -238,5 +238,4 @@ class Execution:
         return [*own, *self._pacer.warnings, *left]
 
     def _locate(self, origin: Origin) -> Place:
-        text = self._texts.get(origin.file, self.job.program.source)
-        return Place.in_text(text, Span(origin.start, origin.end))
+        return self.job.program.place(origin)

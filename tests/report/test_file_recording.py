@@ -82,7 +82,9 @@ def test_a_run_that_ends_in_an_error_leaves_partial_files(program: Path, tmp_pat
 
 
 def test_a_run_in_which_nothing_moved_leaves_no_file(program: Path, tmp_path: Path) -> None:
-    program.write_text("PROGRAM p;\nBEGIN\n  MOVE LIN POSITION(90000, 0, 0);\nENDPROGRAM;\n", encoding="utf-8")
+    program.write_text(
+        "PROGRAM p;\nBEGIN\n  MOVE LIN POSITION(90000, 0, 0);\nENDPROGRAM;\n", encoding="utf-8"
+    )
     with pytest.raises(irlx.RunError) as caught:
         irlx.record(program, tmp_path / "a.irdata")
     assert caught.value.run.files == ()

@@ -6,7 +6,7 @@ import argparse
 import json
 import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import replace
 from pathlib import Path
@@ -18,12 +18,14 @@ from irlx.cli.program_text import ProgramText
 if TYPE_CHECKING:
     from irlx.diagnostics import Diagnostic
     from irlx.job import Job
+    from irlx.program import Program
     from irlx.report.outcome import Outcome
 
 _EXAMPLE = """\
 examples:
   irlx run programs/koch/square.irl
   irlx run programs/koch/square.irl --tick 10 -o square.npz -o square.csv
+  irlx run programs/koch/square.irdata --cell programs/koch/square.toml
 """
 
 
@@ -36,7 +38,9 @@ def add_parser(commands: Any) -> None:
         epilog=_EXAMPLE,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("program", metavar="P.irl", help="program file")
+    parser.add_argument(
+        "program", metavar="P", nargs="?", help="program file, or a stream file that is to be replayed"
+    )
     parser.add_argument("--cell", metavar="C.toml", help="cell file (default: found beside the program)")
     parser.add_argument(
         "-o",
@@ -45,7 +49,7 @@ def add_parser(commands: Any) -> None:
         default=[],
         metavar="OUT",
         help="stream file, format by its ending: .irdata, .npz, .jsonl or .csv; may be given several times "
-        "(default: P.irdata beside the program, or in the working folder)",
+        "(default: P.irdata beside the program, or in the working folder; of a replay P.replay.irdata)",
     )
     parser.add_argument("--tick", type=float, metavar="MS", help="duration of a tick (default: the cell's)")
     parser.add_argument(
@@ -74,6 +78,12 @@ def add_parser(commands: Any) -> None:
         action="store_true",
         help="after a complete run, write values of data lists that the program changed back to their files",
     )
+    parser.add_argument(
+        "--reproduce",
+        metavar="OUT",
+        help="make the stream of a file again from what it says, and compare; P, --cell and --inputs "
+        "where these are not beside it",
+    )
     parser.add_argument("--json", action="store_true", help="print the summary as JSON")
     parser.add_argument("--quiet", action="store_true", help="no progress, no summary")
     parser.add_argument("--no-verify", action="store_true", help="do not check the written files")
@@ -84,6 +94,14 @@ def command(options: argparse.Namespace) -> int:
     """Run the program; exit code 1 where it ended in an error or the verification failed."""
     from irlx.cli.output import exit_code, print_diagnostics
 
+    if options.reproduce is not None:
+        from irlx.cli.reproduce import reproduced
+
+        return reproduced(options)
+    if options.program is None:
+        from irlx.diagnostics import IrlxError, report
+
+        raise IrlxError(report("IRL006", option="P", value="nothing", cause="a program file is needed"))
     text = ProgramText()
     job, outputs = _prepared(options, text)
     from irlx.pipeline import Execution
@@ -130,17 +148,21 @@ def _prepared(options: argparse.Namespace, text: ProgramText) -> tuple[Job, list
     try:
         import_plugins(options.plugin)
         # Before the numeric libraries are imported: a mistake in the text is told at once.
-        program = load(options.program, options.cell)
+        given: Program | Path = Path(options.program)
+        if Path(options.program).suffix.lower() == ".irl":
+            given = load(options.program, options.cell)
         from irlx.job import prepare
 
         asked = options.tick, options.max_slow, options.max_steps, options.inputs
         output = None if options.json else cast("IO[str]", text)
         told = options.files, standard_input(), output
-        job = prepare(program, options.cell, *asked, *told, pause_s=options.pause)
+        job = prepare(given, options.cell, *asked, *told, pause_s=options.pause)
+        program = job.program
         read = [*(found.path for found in program.data_lists), *(found.path for found in program.modules)]
         inputs = (program.path, Path(job.cell.file), *read)
         inputs += () if options.inputs is None else (Path(options.inputs),)
-        outputs = output_paths(options.output, program.path, inputs)
+        asked_for = options.output or [_default_output(job)]
+        outputs = output_paths(asked_for, inputs)
         channels = job.channels.protecting(_written(outputs), "a stream of this run")
         if options.inputs is not None:
             channels = channels.protecting((Path(options.inputs),), "the inputs of this run")
@@ -152,7 +174,7 @@ def _prepared(options: argparse.Namespace, text: ProgramText) -> tuple[Job, list
         raise
 
 
-def output_paths(asked: list[str], program: Path, inputs: tuple[Path, ...]) -> list[Path]:
+def output_paths(asked: Sequence[str | Path], inputs: tuple[Path, ...]) -> list[Path]:
     """Files to write, checked before anything moves.
 
     Raises StreamError: IRL003 not writable, IRL004 unknown ending, IRL005 an input would be overwritten.
@@ -162,7 +184,7 @@ def output_paths(asked: list[str], program: Path, inputs: tuple[Path, ...]) -> l
     from irlx.streams.error import StreamError
     from irlx.streams.formats import KNOWN_ENDINGS
 
-    paths = [Path(name) for name in asked] or [_default_output(program)]
+    paths = [Path(name) for name in asked]
     for path in paths:
         if path.suffix.lower() not in KNOWN_ENDINGS:
             known = ", ".join(KNOWN_ENDINGS)
@@ -173,8 +195,12 @@ def output_paths(asked: list[str], program: Path, inputs: tuple[Path, ...]) -> l
     return paths
 
 
-def _default_output(program: Path) -> Path:
-    beside = program.with_suffix(".irdata")
+def _default_output(job: Job) -> Path:
+    from irlx.recorded import Recorded
+
+    path = job.program.path
+    ending = f".replay{path.suffix}" if isinstance(job.program, Recorded) else ".irdata"
+    beside = path.with_suffix(ending)
     return beside if os.access(beside.parent, os.W_OK) else Path(beside.name)
 
 
@@ -237,9 +263,12 @@ def _plain_diagnostics(diagnostics: Iterable[Diagnostic]) -> list[dict[str, obje
 
 
 def _verified(path: Path, job: Job) -> Any:
+    from irlx.program import Program
     from irlx.verification import verify
 
-    return verify(path, job.program.path, job.cell.file, job.max_steps)
+    # What is replayed may be gone as a text.
+    program = job.program.path if isinstance(job.program, Program) else None
+    return verify(path, program, job.cell.file, job.max_steps)
 
 
 def _print_summary(
