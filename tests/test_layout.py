@@ -27,6 +27,9 @@ ORDER = (
 WIRING = {
     "job",
     "pipeline",
+    "running",
+    "recorded",
+    "reproduction",
     "program",
     "checking",
     "dry_run",

@@ -17,11 +17,13 @@ if TYPE_CHECKING:
     from irlx.checking import check
     from irlx.diagnostics import Diagnostic, IrlxError
     from irlx.language.format import format_source
-    from irlx.pipeline import run, stream
     from irlx.program import Program, ProgramError, load
     from irlx.registration import register
+    from irlx.report.outcome import Outcome
     from irlx.report.run import Run, RunError, RunInterrupted
+    from irlx.reproduction import Reproduction, reproduce
     from irlx.robot.equality import Constraint
+    from irlx.running import record, run, stream
     from irlx.streams.error import StreamError
     from irlx.streams.sample import Sample
     from irlx.transform.measures.measure import Measure as Criterion
@@ -34,8 +36,10 @@ _HOMES = {
     "Criterion": "irlx.transform.measures.measure:Measure",
     "Diagnostic": "irlx.diagnostics",
     "IrlxError": "irlx.diagnostics",
+    "Outcome": "irlx.report.outcome",
     "Program": "irlx.program",
     "ProgramError": "irlx.program",
+    "Reproduction": "irlx.reproduction",
     "Report": "irlx.verifier.findings.report",
     "Run": "irlx.report.run",
     "RunError": "irlx.report.run",
@@ -45,9 +49,11 @@ _HOMES = {
     "check": "irlx.checking",
     "format_source": "irlx.language.format",
     "load": "irlx.program",
+    "record": "irlx.running",
     "register": "irlx.registration",
-    "run": "irlx.pipeline",
-    "stream": "irlx.pipeline",
+    "reproduce": "irlx.reproduction",
+    "run": "irlx.running",
+    "stream": "irlx.running",
     "verify": "irlx.verification",
 }
 """Module of each public name; imported on first use, so that looking at a program stays light."""
@@ -58,9 +64,11 @@ __all__ = [
     "Criterion",
     "Diagnostic",
     "IrlxError",
+    "Outcome",
     "Program",
     "ProgramError",
     "Report",
+    "Reproduction",
     "Run",
     "RunError",
     "RunInterrupted",
@@ -70,7 +78,9 @@ __all__ = [
     "check",
     "format_source",
     "load",
+    "record",
     "register",
+    "reproduce",
     "run",
     "stream",
     "verify",

@@ -30,6 +30,7 @@ from irlx.pacing.inputs import InputFunction, Inputs
 from irlx.pacing.pauses import PauseFunction, Pauses, is_time
 from irlx.program import Program, ProgramError, cell_path, load
 from irlx.promises import CONDITION, LONGEST_TICK, SHORTEST_TICK
+from irlx.recorded import Recorded, cell_of, check_joints, is_recorded, recorded
 from irlx.robot.equality import Constraint, LinearConstraint
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.registered_constraints import registered_constraints
@@ -46,14 +47,14 @@ LONGEST_TICK_MS = LONGEST_TICK * 1e3
 
 @dataclass(frozen=True)
 class Job:
-    """A program and the cell it runs in, checked against each other; tick in ns.
+    """A program, or a recorded execution, and the cell it runs in, checked against each other; tick in ns.
 
     A move may take `max_slow` times as long as programmed, the program may execute `max_steps` statements;
     `inputs` are the cell's with those of the caller; `channels` what the program may read and write; `pauses`
     say how long each PAUSE lasts; `making` is what the stream will say of all this.
     """
 
-    program: Program
+    program: Program | Recorded
     cell: Cell
     tick_ns: int
     max_slow: float = inf
@@ -65,7 +66,7 @@ class Job:
 
 
 def prepare(
-    program: Program | PathLike,
+    program: Program | Recorded | PathLike,
     cell: PathLike | None = None,
     tick_ms: float | None = None,
     max_slow: float | None = None,
@@ -79,12 +80,21 @@ def prepare(
 ) -> Job:
     """Load what a run needs; `files`, `input` and `output` as in `run`.
 
-    `cell` None: the file that SYSTEM SPECIFICATION names, else the program's own name with .toml.
+    `cell` None: the file that SYSTEM SPECIFICATION names, else the program's own name with .toml. A stream
+    file in the place of a program is replayed, at its own tick.
     Raises ProgramError, CellError, or IrlxError with IRL006 for a number out of range.
     """
-    if not isinstance(program, Program):
-        program = _loaded(program, cell)
-    loaded = load_cell(cell_path(program, cell))
+    if not isinstance(program, Program | Recorded):
+        program = recorded(Path(program)) if is_recorded(Path(program)) else _loaded(program, cell)
+    loaded = _loaded_cell(program, cell)
+    if isinstance(program, Recorded):
+        without = {
+            "--max-steps": max_steps,
+            "--files": files,
+            "--pause": pause_s or None,
+            "on_pause=": on_pause,
+        }
+        _refuse(without)
     if max_slow is not None and not max_slow >= 1.0:
         cause = "a move cannot be faster than programmed: at least 1"
         raise IrlxError(report("IRL006", option="--max-slow", value=f"{max_slow:g}", cause=cause))
@@ -104,18 +114,36 @@ def prepare(
         **_inputs_told(inputs),
         software=software(),
         given=_untold(inputs=inputs, input=input, files=files, on_pause=on_pause),
+        replay_of=program.stream_sha256 if isinstance(program, Recorded) else "",
     )
     more = _channels(program, loaded, files, input, output), Pauses(pause_s, on_pause), making
     if tick_ms is None:
-        return Job(program, loaded, loaded.tick_ns, slowest, steps, said, *more)
+        tick_ns = program.header.tick_ns if isinstance(program, Recorded) else loaded.tick_ns
+        return Job(program, loaded, tick_ns, slowest, steps, said, *more)
     if not LEAST_TICK_MS <= tick_ms <= LONGEST_TICK_MS:
         cause = f"a tick lasts {LEAST_TICK_MS:g} to {LONGEST_TICK_MS:g} ms"
         raise IrlxError(report("IRL006", option="--tick", value=f"{tick_ms:g}", cause=cause))
     return Job(program, loaded, round(tick_ms * 1e6), slowest, steps, said, *more)
 
 
+def _loaded_cell(program: Program | Recorded, given: PathLike | None) -> Cell:
+    if isinstance(program, Program):
+        return load_cell(cell_path(program, given))
+    cell = load_cell(cell_of(program, None if given is None else Path(given)))
+    check_joints(program, cell)
+    return cell
+
+
+def _refuse(given: Mapping[str, object]) -> None:
+    """Raises IrlxError, IRL006, for the first of these options that is given for a replay."""
+    for option, value in given.items():
+        if value is not None:
+            cause = "a recorded execution is replayed as it was: only its cell, tick and inputs may be given"
+            raise IrlxError(report("IRL006", option=option, value=str(value), cause=cause))
+
+
 def _channels(
-    program: Program, cell: Cell, files: PathLike | None, input: InputGiven, output: IO[str] | None
+    program: Program | Recorded, cell: Cell, files: PathLike | None, input: InputGiven, output: IO[str] | None
 ) -> ChannelSetup:
     """What a program may read and write. Raises IrlxError, IRL006, for what is no folder or input."""
     folder = program.path.parent if files is None else Path(files)
@@ -227,7 +255,7 @@ def header_of(job: Job) -> StreamHeader:
     return StreamHeader(
         format_version=FORMAT_VERSION,
         irlx_version=__version__,
-        program_name=program.path.name,
+        program_name=program.file_name,
         program_sha256=program.sha256,
         cell_name=Path(cell.file).name,
         robot_name=cell.robot.name,

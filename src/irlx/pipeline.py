@@ -3,27 +3,22 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from contextlib import closing
 from dataclasses import replace
 from math import radians
-from pathlib import PurePath
-from typing import IO
 
 import numpy as np
 from numpy.typing import NDArray
 
 from irlx.blocks import AskPause, AskStandstill, Block, Origin, Question
 from irlx.cell.setting import setting_of
-from irlx.diagnostics import Diagnostic, IrlxError, Place, Span, report
+from irlx.diagnostics import Diagnostic, IrlxError, Place, report
 from irlx.interpreter.channels.channels import Channels, Told
-from irlx.interpreter.channels.pieces import InputGiven
 from irlx.interpreter.interpret import Interpretation
-from irlx.job import InputsGiven, Job, PathLike, header_of, kinematics_of, prepare
-from irlx.language.suppression import without_ignored
+from irlx.job import Job, header_of, kinematics_of
 from irlx.pacing.correction.corrector import CorrectedRow, Corrector, Senses
 from irlx.pacing.correction.nearness import Nearness
-from irlx.pacing.correction.share import CORRECTION_SHARE
 from irlx.pacing.correction.tally import Tally
 from irlx.pacing.correction.tool_rates import ToolRates
 from irlx.pacing.executed import Executed
@@ -32,27 +27,15 @@ from irlx.pacing.explanation import explain_tick as explain_row
 from irlx.pacing.lookahead import Lookahead
 from irlx.pacing.notes import Notes
 from irlx.pacing.pacer import Pacer
-from irlx.pacing.pauses import PauseAborted, PauseFunction
+from irlx.pacing.pauses import PauseAborted
 from irlx.pacing.resolution import EVERY_TICK, Resolution
 from irlx.pacing.situation import PacingSetup
-from irlx.program import Program
-from irlx.report.recording import Recording
-from irlx.report.run import Run, RunError, RunInterrupted
+from irlx.recorded import Recorded
 from irlx.scene.sightings import Sightings
 from irlx.streams.atomic import AtomicFile
-from irlx.streams.sample import Sample
-from irlx.streams.sample_stream import SampleStream
-from irlx.streams.sampler import Sampler
+from irlx.streams.joint_stream import StreamHeader
 
 Array = NDArray[np.float64]
-Progress = Callable[[Block, float], None]
-"""Called after each block with the block and the simulated time so far, s."""
-
-Sensor = Callable[[Sample], Sequence[float] | Array | None]
-"""Called with the last sample; gives the correction that the tool is to have, None to leave it."""
-
-Watcher = Callable[[Sample], Mapping[str, Sequence[float] | Array | None] | None]
-"""Called with the last sample; gives poses of obstacles by name, None to leave them where they are."""
 
 
 class Execution:
@@ -85,11 +68,9 @@ class Execution:
         )
         self.kinematics = setup.kinematics
         self._pacer = Pacer(setup, self._locate)
-        texts = (job.program.source, *(module.source for module in job.program.modules))
         self._interpretation: Interpretation | None = None
         self.left_open: list[Diagnostic] = []
         self.channels = job.channels.on_disk()
-        self._texts = {PurePath(text.name).name: text for text in texts}
 
     def __iter__(self) -> Iterator[Executed]:
         """Execute the program block by block. Raises IrlxError where it cannot go on (IRL090: by a fault)."""
@@ -200,6 +181,8 @@ class Execution:
 
     def _program(self, channels: Channels) -> Generator[Block | Question, tuple[float, ...] | None, None]:
         job, program = self.job, self.job.program
+        if isinstance(program, Recorded):
+            return program.replayed(job.inputs, job.cell)
         setting = setting_of(job.cell)
         ready = Interpretation(
             program.tree,
@@ -242,10 +225,10 @@ class Execution:
         dt = self.job.tick_ns / 1e9
         return explain_row(rows, before, tick, limits, setup.weights, setup.kinematics, dt)
 
-    def recording(self) -> Recording:
-        """A recording that begins at the cell's start posture."""
+    def start(self) -> tuple[StreamHeader, Array, Array, Array]:
+        """Header of the stream; start posture (n,), and the tool's rotation (3, 3), position (3,) m in it."""
         start = self.job.cell.start
-        return Recording(header_of(self.job), start, *self.kinematics.tool_pose(start))
+        return header_of(self.job), start, *self.kinematics.tool_pose(start)
 
     @property
     def warnings(self) -> list[Diagnostic]:
@@ -255,153 +238,4 @@ class Execution:
         return [*own, *self._pacer.warnings, *left]
 
     def _locate(self, origin: Origin) -> Place:
-        text = self._texts.get(origin.file, self.job.program.source)
-        return Place.in_text(text, Span(origin.start, origin.end))
-
-
-def run(
-    program: Program | PathLike,
-    cell: PathLike | None = None,
-    tick_ms: float | None = None,
-    progress: Progress | None = None,
-    explain_tick: int | None = None,
-    max_slow: float | None = None,
-    max_steps: int | None = None,
-    inputs: InputsGiven = None,
-    write_data: bool = False,
-    files: PathLike | None = None,
-    input: InputGiven = None,
-    output: IO[str] | None = None,
-    pause_s: float = 0.0,
-) -> Run:
-    """Interpret a program, move its robot, and return the joint stream.
-
-    `cell`: path of the cell file, by default found beside the program; `tick_ms` overrides the
-    cell's tick; `explain_tick` asks for `Run.explanation` of that tick; a move that limits make
-    more than `max_slow` times as long as programmed is an error, and so are more than `max_steps`
-    statements (by default 10,000,000); `inputs` as `InputsGiven`, in place of the cell's; each PAUSE lasts
-    `pause_s` s, rounded up to whole ticks. With `write_data`, values of data lists that the program has
-    changed are written to their files after a complete run.
-    `files`: the folder that OPEN finds and makes files in, by default that of the program; `input`: what
-    STANDARD_IN reads, a text or a file that is open; `output`: what gets the text for STANDARD_OUT while it
-    is written, for instance sys.stdout, beside `Run.output`.
-    Raises ProgramError and CellError before anything moves, RunError (with what was executed until then)
-    once it does, RunInterrupted on Ctrl-C.
-    """
-    channels = files, input, output
-    job = prepare(program, cell, tick_ms, max_slow, max_steps, inputs, *channels, pause_s)
-    execution = Execution(job)
-    finished = execute(execution, progress, explain_tick)
-    if not write_data:
-        return finished
-    return replace(finished, diagnostics=(*finished.diagnostics, *execution.write_data()))
-
-
-def execute(execution: Execution, progress: Progress | None = None, explain_tick: int | None = None) -> Run:
-    """Run a prepared job to its end; see `run`."""
-    recording = execution.recording()
-    explanation: TickExplanation | None = None
-    try:
-        for executed in execution:
-            if explain_tick is not None and explanation is None:
-                explanation = execution.explain(executed, recording.last_postures, explain_tick)
-            recording.add(executed)
-            if progress is not None:
-                progress(executed.block, recording.duration)
-    except IrlxError as error:
-        known = _told(execution)
-        partial = recording.finish(False, (*known, *error.diagnostics))
-        partial = replace(partial, explanation=explanation, output=execution.channels.output)
-        raise RunError((*error.diagnostics, *known), partial) from error
-    except KeyboardInterrupt as interrupt:
-        partial = recording.finish(False, _told(execution))
-        raise RunInterrupted(replace(partial, output=execution.channels.output)) from interrupt
-    finished = recording.finish(True, _told(execution))
-    return replace(finished, explanation=explanation, output=execution.channels.output)
-
-
-def _told(execution: Execution) -> tuple[Diagnostic, ...]:
-    """Warnings of a run so far, but those of its motion that comments of the program ask to ignore."""
-    program, cell = execution.job.program, execution.job.cell
-    kept, _ = without_ignored(execution.warnings, program.ignores)
-    return (*program.diagnostics, *cell.warnings, *kept)
-
-
-def stream(
-    program: Program | PathLike,
-    cell: PathLike | None = None,
-    tick_ms: float | None = None,
-    max_slow: float | None = None,
-    max_steps: int | None = None,
-    inputs: InputsGiven = None,
-    files: PathLike | None = None,
-    input: InputGiven = None,
-    output: IO[str] | None = None,
-    pause_s: float = 0.0,
-    on_pause: PauseFunction | None = None,
-    correct: Sensor | None = None,
-    obstacles: Watcher | None = None,
-) -> SampleStream:
-    """Samples of a run, one after another, motion by motion as they are asked for.
-
-    The same samples as `run` gives. Iteration may stop at any sample. At each PAUSE, all samples before it
-    handed out, `on_pause` is called with its place; the program goes on when it returns, after the time, s,
-    that it returns, or `pause_s` for None; what it raises comes out here. What cannot be prepared raises
-    here, what goes wrong in motion at the sample it keeps from coming, as IrlxError.
-
-    `correct` is asked after each sample for the correction of the tool in the next one: six numbers, the
-    displacement (m) and the rotation vector (rad) from the programmed pose in its own frame, or None for no
-    change. Motions are then planned with three quarters of the joints' speed and acceleration limits, and
-    corrections follow within the rest; `SampleStream.corrections` reports what was delayed. Raises IrlxError
-    with IRL583 for a cell with constraints, IRL006 for what is no function; at a sample IRL580, IRL581,
-    IRL582 for an answer that is none, IRL584 for a correction for which new limits leave no room.
-
-    `obstacles` is asked after each sample, and before a motion is planned, where obstacles of the cell are in
-    the next one: a mapping from names to three numbers, the position (m) of the obstacle's frame in the
-    world, or six, with its rotation vector (rad); None for as before. Where the program keeps clear of them,
-    the posture makes room within the same part of the limits while the tool keeps its path; where it cannot,
-    the margin gives way, which `SampleStream.obstacles` and a warning, IRL587, tell. Raises IrlxError at a
-    sample: IRL585 for an answer that is none, IRL586 for names that the cell does not have.
-    """
-    channels = files, input, output
-    job = prepare(program, cell, tick_ms, max_slow, max_steps, inputs, *channels, pause_s, on_pause)
-    if correct is None and obstacles is None:
-        execution = Execution(job)
-        return SampleStream(_samples(execution), lambda: _told(execution))
-    for option, given in (("correct=", correct), ("obstacles=", obstacles)):
-        if given is not None and not callable(given):
-            raise IrlxError(report("IRL006", option=option, value=repr(given), cause="a function"))
-    sightings = None if obstacles is None else Sightings()
-    execution = Execution(job, planned_share=1.0 - CORRECTION_SHARE, sightings=sightings)
-    if execution.kinematics.constraints:
-        names = ", ".join(one.name for one in execution.kinematics.constraints)
-        raise IrlxError(report("IRL583", names=names))
-    tally, nearness = Tally(job.cell.robot.joint_names), Nearness()
-    return SampleStream(
-        _followed(execution, correct, obstacles, tally, nearness),
-        lambda: (*_told(execution), *nearness.warnings),
-        lambda: tally.report,
-        lambda: nearness.report,
-    )
-
-
-def _samples(execution: Execution) -> Generator[Sample, None, None]:
-    recording = execution.recording()
-    yield from recording.take_samples()
-    for executed in execution:
-        recording.add(executed)
-        yield from recording.take_samples()
-
-
-def _followed(
-    execution: Execution, sensor: Sensor | None, watcher: Watcher | None, tally: Tally, nearness: Nearness
-) -> Generator[Sample, None, None]:
-    job = execution.job
-    sampler, start = Sampler(job.tick_ns), job.cell.start
-    senses = Senses(
-        None if sensor is None else lambda: sensor(sampler.last),
-        None if watcher is None else lambda: watcher(sampler.last),
-    )
-    yield sampler.sample(start, *execution.kinematics.tool_pose(start), 0, np.zeros(6))
-    for row in execution.corrected(senses, tally, nearness):
-        yield sampler.sample(row.q, row.rotation, row.position, row.block.id, row.correction, row.nearest)
+        return self.job.program.place(origin)

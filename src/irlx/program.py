@@ -7,12 +7,13 @@ import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from pathlib import Path
+from pathlib import Path, PurePath
 
+from irlx.blocks import Origin
 from irlx.cell.find import find_cell, is_file
 from irlx.cell.frame_names import cell_table, frame_names
 from irlx.cell.obstacle_names import obstacle_names
-from irlx.diagnostics import Diagnostic, IrlxError, Place, SourceText, report
+from irlx.diagnostics import Diagnostic, IrlxError, Place, SourceText, Span, report
 from irlx.diagnostics.near_files import near_files
 from irlx.language import tree
 from irlx.language.analysis import Analysis, CellJoints, CellNames, DataListResolver, analyse
@@ -69,6 +70,17 @@ class Program:
     data_lists: tuple[DataListFile, ...] = ()
     modules: tuple[ModuleFile, ...] = ()
     ignores: tuple[Ignore, ...] = ()
+
+    @property
+    def file_name(self) -> str:
+        """Name of its file, without folder."""
+        return self.path.name
+
+    def place(self, origin: Origin) -> Place:
+        """Where a block comes from, in the text of the program or of one of its modules."""
+        texts = (module.source for module in self.modules)
+        text = next((text for text in texts if PurePath(text.name).name == origin.file), self.source)
+        return Place.in_text(text, Span(origin.start, origin.end))
 
     @property
     def name(self) -> str:

@@ -8,7 +8,6 @@ import signal
 import subprocess
 import sys
 import time
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -291,15 +290,14 @@ def test_interrupt(folder, environment, names):
 @pytest.mark.req("STR-06")
 def test_a_run_whose_file_fails_says_so(inside, folder, monkeypatch):
     """A writer that loses a bit of a joint: the file is read back, judged and refused."""
-    from irlx.report.run import Run
-    from irlx.streams import write_stream
+    from irlx.streams import StreamWriter
 
-    def save(run, path):
-        q = run.stream.q.copy()
-        q[3, 1] += 2e-6
-        write_stream(replace(run.stream, q=q), path)
+    samples = StreamWriter.samples
 
-    monkeypatch.setattr(Run, "save", save)
+    def changed(writer, ticks, q, block, tool):
+        samples(writer, ticks, q + 2e-6 * (ticks[:, None] == 3) * (np.arange(q.shape[1]) == 1), block, tool)
+
+    monkeypatch.setattr(StreamWriter, "samples", changed)
     done = inside("run", "p.irl", "-o", "a.irdata")
     assert done.returncode == 1
     assert "a.irdata: error IRL709: the stream fails the check 'tool position': first" in done.stderr

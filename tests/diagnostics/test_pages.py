@@ -41,7 +41,7 @@ MESSAGES = {
     "IRL126": (4, 3, "this comment holds the beginning of another one, in line 6"),
     "IRL140": (4, 34, "nothing on this line gives IRL205: the comment ignores nothing"),
     "IRL141": (4, 46, "IRL203 is an error and cannot be ignored"),
-    "IRL142": (3, 18, "no message has the code IRL2O5; did you mean 'IRL425' or 'IRL285' or 'IRL265'?"),
+    "IRL142": (3, 18, "no message has the code IRL2O5; did you mean 'IRL725' or 'IRL425' or 'IRL285'?"),
     "IRL143": (3, 3, "this comment to irlx is not understood: expected irlx: ignore, then codes"),
     "IRL201": (4, 3, "unknown name 'lenght'; did you mean 'length'?"),
     "IRL202": (3, 11, "'Count' is declared twice"),

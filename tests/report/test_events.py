@@ -5,10 +5,18 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from irlx.report.events import SOURCES, limit_events
+from irlx.report.events import SOURCES, ActiveSpans, LimitActive
 from irlx.transform.step_bounds import BoundSource
 
 NAMES = ("j1", "j2", "j3")
+
+
+def limit_events(active: np.ndarray, dt: float, portions: tuple[int, ...] = ()) -> tuple[LimitActive, ...]:
+    """Events of flags that come in portions, cut before these rows."""
+    spans = ActiveSpans(NAMES, dt)
+    for part in np.split(active, portions):
+        spans.take(part)
+    return spans.events
 
 
 def by_walking(active: np.ndarray, dt: float) -> list[tuple]:
@@ -33,7 +41,8 @@ def test_spans_equal_those_of_a_walk(seed: int) -> None:
     rng = np.random.default_rng(seed)
     active = rng.choice([-4, -1, 0, 0, 0, 1, 2, 3], size=(60, 3)).astype(np.int8)
     active = np.repeat(active, rng.integers(1, 4), axis=0)
-    events = limit_events(active, NAMES, 0.05)
+    portions = tuple(np.sort(rng.integers(0, len(active) + 1, rng.integers(6))).tolist())
+    events = limit_events(active, 0.05, portions)
     found = [(e.joint, e.kind, e.side, e.first_tick, e.last_tick) for e in events]
     assert found == by_walking(active, 0.05), f"seed {seed}"
     for event in events:
@@ -42,14 +51,14 @@ def test_spans_equal_those_of_a_walk(seed: int) -> None:
 
 
 def test_no_flag_no_event() -> None:
-    assert limit_events(np.zeros((5, 3), dtype=np.int8), NAMES, 0.01) == ()
+    assert limit_events(np.zeros((5, 3), dtype=np.int8), 0.01) == ()
 
 
 @pytest.mark.parametrize("flag", [1, -2, 3, -4])
 def test_a_bound_that_holds_from_first_to_last_tick_is_one_event(flag: int) -> None:
     active = np.zeros((4, 3), dtype=np.int8)
     active[:, 1] = flag
-    (event,) = limit_events(active, NAMES, 0.01)
+    (event,) = limit_events(active, 0.01)
     assert (event.joint, event.first_tick, event.last_tick) == ("j2", 0, 3)
     assert event.side == ("upper" if flag > 0 else "lower")
     assert event.kind == SOURCES[abs(flag) - 1]

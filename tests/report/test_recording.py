@@ -9,7 +9,9 @@ from scipy.spatial.transform import Rotation
 from irlx.blocks import JointTarget, MotionLaw, MoveBlock, MoveKind, Origin
 from irlx.pacing.executed import Executed
 from irlx.pacing.rows import MotionRows
+from irlx.report.recorder import Recorder
 from irlx.report.recording import Recording
+from irlx.report.samples import Samples
 from irlx.robot.limits import JointLimits
 from irlx.streams.joint_stream import FORMAT_VERSION, StreamHeader
 
@@ -108,14 +110,15 @@ def test_quaternions_are_unit_and_do_not_change_sign() -> None:
 @pytest.mark.req("MOT-10")
 def test_samples_taken_motion_by_motion_are_those_of_the_run() -> None:
     whole, motions = recorded()
-    lazy, _ = recorded()
-    samples = list(lazy.take_samples())
+    waiting = Samples(header())
+    lazy = Recorder(header(), START, np.eye(3), np.array([0.1, 0.2, 0.0]), (waiting,))
+    samples = list(waiting.new())
     assert len(samples) == 1
     for rows in motions:
         whole.add(Executed(rows.block, rows.first_tick - 1, rows))
         lazy.add(Executed(rows.block, rows.first_tick - 1, rows))
-        samples += lazy.take_samples()
-    assert list(lazy.take_samples()) == []
+        samples += waiting.new()
+    assert list(waiting.new()) == []
     run = whole.finish(True, ())
     assert [sample.tick for sample in samples] == list(range(17))
     for k, sample in enumerate(samples):

@@ -6,7 +6,7 @@ import argparse
 import json
 import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import replace
 from pathlib import Path
@@ -18,12 +18,14 @@ from irlx.cli.program_text import ProgramText
 if TYPE_CHECKING:
     from irlx.diagnostics import Diagnostic
     from irlx.job import Job
-    from irlx.report.run import Run
+    from irlx.program import Program
+    from irlx.report.outcome import Outcome
 
 _EXAMPLE = """\
 examples:
   irlx run programs/koch/square.irl
   irlx run programs/koch/square.irl --tick 10 -o square.npz -o square.csv
+  irlx run programs/koch/square.irdata --cell programs/koch/square.toml
 """
 
 
@@ -36,7 +38,9 @@ def add_parser(commands: Any) -> None:
         epilog=_EXAMPLE,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("program", metavar="P.irl", help="program file")
+    parser.add_argument(
+        "program", metavar="P", nargs="?", help="program file, or a stream file that is to be replayed"
+    )
     parser.add_argument("--cell", metavar="C.toml", help="cell file (default: found beside the program)")
     parser.add_argument(
         "-o",
@@ -45,7 +49,7 @@ def add_parser(commands: Any) -> None:
         default=[],
         metavar="OUT",
         help="stream file, format by its ending: .irdata, .npz, .jsonl or .csv; may be given several times "
-        "(default: P.irdata beside the program, or in the working folder)",
+        "(default: P.irdata beside the program, or in the working folder; of a replay P.replay.irdata)",
     )
     parser.add_argument("--tick", type=float, metavar="MS", help="duration of a tick (default: the cell's)")
     parser.add_argument(
@@ -74,6 +78,12 @@ def add_parser(commands: Any) -> None:
         action="store_true",
         help="after a complete run, write values of data lists that the program changed back to their files",
     )
+    parser.add_argument(
+        "--reproduce",
+        metavar="OUT",
+        help="make the stream of a file again from what it says, and compare; P, --cell and --inputs "
+        "where these are not beside it",
+    )
     parser.add_argument("--json", action="store_true", help="print the summary as JSON")
     parser.add_argument("--quiet", action="store_true", help="no progress, no summary")
     parser.add_argument("--no-verify", action="store_true", help="do not check the written files")
@@ -84,33 +94,40 @@ def command(options: argparse.Namespace) -> int:
     """Run the program; exit code 1 where it ended in an error or the verification failed."""
     from irlx.cli.output import exit_code, print_diagnostics
 
+    if options.reproduce is not None:
+        from irlx.cli.reproduce import reproduced
+
+        return reproduced(options)
+    if options.program is None:
+        from irlx.diagnostics import IrlxError, report
+
+        raise IrlxError(report("IRL006", option="P", value="nothing", cause="a program file is needed"))
     text = ProgramText()
     job, outputs = _prepared(options, text)
-    from irlx.pipeline import Execution, execute
+    from irlx.pipeline import Execution
     from irlx.report.run import RunError, RunInterrupted
+    from irlx.running import execute_to_files
 
     execution = Execution(job)
     try:
         with _progress(options) as progress:
             text.first = getattr(progress, "silence", None)
-            run = execute(execution, progress, options.explain_tick)
+            run = execute_to_files(execution, outputs, progress, options.explain_tick)
     except RunError as error:
         text.end_line()
         print_diagnostics(error.diagnostics)
         if not options.json:
             _print_tick(error.run, options)
-        _keep_partial(error.run, outputs, options)
+        _tell_partial(error.run, outputs, options)
         return exit_code(error.diagnostics)
     except RunInterrupted as interrupt:
         text.end_line()
         print("irlx: interrupted", file=sys.stderr)
-        _keep_partial(interrupt.run, outputs, options)
+        _tell_partial(interrupt.run, outputs, options)
         return 130
     if not options.quiet:
         text.end_line()
         print_diagnostics(run.diagnostics)
-    for path in outputs:
-        run.save(path)
     reports = {} if options.no_verify else {str(path): _verified(path, job) for path in outputs}
     broken = [found for name, report in reports.items() for found in report.diagnostics(name)]
     print_diagnostics(broken)
@@ -131,17 +148,21 @@ def _prepared(options: argparse.Namespace, text: ProgramText) -> tuple[Job, list
     try:
         import_plugins(options.plugin)
         # Before the numeric libraries are imported: a mistake in the text is told at once.
-        program = load(options.program, options.cell)
+        given: Program | Path = Path(options.program)
+        if Path(options.program).suffix.lower() == ".irl":
+            given = load(options.program, options.cell)
         from irlx.job import prepare
 
         asked = options.tick, options.max_slow, options.max_steps, options.inputs
         output = None if options.json else cast("IO[str]", text)
         told = options.files, standard_input(), output
-        job = prepare(program, options.cell, *asked, *told, pause_s=options.pause)
+        job = prepare(given, options.cell, *asked, *told, pause_s=options.pause)
+        program = job.program
         read = [*(found.path for found in program.data_lists), *(found.path for found in program.modules)]
         inputs = (program.path, Path(job.cell.file), *read)
         inputs += () if options.inputs is None else (Path(options.inputs),)
-        outputs = output_paths(options.output, program.path, inputs)
+        asked_for = options.output or [_default_output(job)]
+        outputs = output_paths(asked_for, inputs)
         channels = job.channels.protecting(_written(outputs), "a stream of this run")
         if options.inputs is not None:
             channels = channels.protecting((Path(options.inputs),), "the inputs of this run")
@@ -153,7 +174,7 @@ def _prepared(options: argparse.Namespace, text: ProgramText) -> tuple[Job, list
         raise
 
 
-def output_paths(asked: list[str], program: Path, inputs: tuple[Path, ...]) -> list[Path]:
+def output_paths(asked: Sequence[str | Path], inputs: tuple[Path, ...]) -> list[Path]:
     """Files and folders to write, checked before anything moves.
 
     Raises StreamError: IRL003 not writable, IRL004 unknown ending, IRL005 an input would be overwritten,
@@ -163,7 +184,7 @@ def output_paths(asked: list[str], program: Path, inputs: tuple[Path, ...]) -> l
     from irlx.streams.error import StreamError
     from irlx.streams.formats import format_of
 
-    paths = [Path(name) for name in asked] or [_default_output(program)]
+    paths = [Path(name) for name in asked]
     for path in paths:
         known = format_of(path, "IRL004")
         if any(_holds(path, source) for source in inputs):
@@ -179,8 +200,12 @@ def _holds(path: Path, source: Path) -> bool:
     return path.samefile(source) or source.resolve().is_relative_to(path.resolve())
 
 
-def _default_output(program: Path) -> Path:
-    beside = program.with_suffix(".irdata")
+def _default_output(job: Job) -> Path:
+    from irlx.recorded import Recorded
+
+    path = job.program.path
+    ending = f".replay{path.suffix}" if isinstance(job.program, Recorded) else ".irdata"
+    beside = path.with_suffix(ending)
     return beside if os.access(beside.parent, os.W_OK) else Path(beside.name)
 
 
@@ -194,18 +219,15 @@ def _progress(options: argparse.Namespace) -> AbstractContextManager[Any]:
     return LiveProgress()
 
 
-def _partial(path: Path) -> Path:
-    """Name of a stream that is not complete."""
-    return path.with_name(f"{path.stem}.partial{path.suffix}")
-
-
 def _written(outputs: list[Path]) -> tuple[Path, ...]:
     """Every file that a run may write by itself."""
-    return (*outputs, *map(_partial, outputs))
+    from irlx.report.file_recording import partial_name
+
+    return (*outputs, *map(partial_name, outputs))
 
 
-def _keep_partial(run: Run, outputs: list[Path], options: argparse.Namespace) -> None:
-    """Write what was executed under names of its own: the asked names only ever hold complete streams."""
+def _tell_partial(run: Outcome, outputs: list[Path], options: argparse.Namespace) -> None:
+    """Say where what was executed is: the asked names only ever hold complete streams."""
     from irlx.cli.output import encodable
 
     for path in outputs:
@@ -213,12 +235,9 @@ def _keep_partial(run: Run, outputs: list[Path], options: argparse.Namespace) ->
             print(
                 encodable(f"irlx: {path} is left as it was, from an earlier run", sys.stderr), file=sys.stderr
             )
-    if run.t.size > 1:
-        for path in outputs:
-            partial = _partial(path)
-            run.save(partial)
-            words = f"the stream up to the last stop ({run.t[-1]:.6g} s), marked incomplete: {partial}"
-            print(encodable(f"irlx: {words}", sys.stderr), file=sys.stderr)
+    for path in run.files:
+        words = f"the stream up to the last stop ({run.summary.duration:.6g} s), marked incomplete: {path}"
+        print(encodable(f"irlx: {words}", sys.stderr), file=sys.stderr)
     if options.json:
         plain = {
             "summary": run.summary.to_plain(),
@@ -228,13 +247,15 @@ def _keep_partial(run: Run, outputs: list[Path], options: argparse.Namespace) ->
         print(json.dumps(plain, indent=2))
 
 
-def _print_tick(run: Run, options: argparse.Namespace) -> None:
+def _print_tick(run: Outcome, options: argparse.Namespace) -> None:
     from irlx.cli.output import encodable
     from irlx.report.tick_text import tick_text
 
     if options.explain_tick is None:
         return
-    words = f"tick {options.explain_tick}: no motion has it; motions have ticks 1 to {len(run.t) - 1}"
+    words = (
+        f"tick {options.explain_tick}: no motion has it; motions have ticks 1 to {run.summary.samples - 1}"
+    )
     if run.explanation is not None:
         words = tick_text(run.explanation)
     print(encodable(words, sys.stdout) + "\n")
@@ -247,13 +268,16 @@ def _plain_diagnostics(diagnostics: Iterable[Diagnostic]) -> list[dict[str, obje
 
 
 def _verified(path: Path, job: Job) -> Any:
+    from irlx.program import Program
     from irlx.verification import verify
 
-    return verify(path, job.program.path, job.cell.file, job.max_steps)
+    # What is replayed may be gone as a text.
+    program = job.program.path if isinstance(job.program, Program) else None
+    return verify(path, program, job.cell.file, job.max_steps)
 
 
 def _print_summary(
-    run: Run,
+    run: Outcome,
     outputs: list[Path],
     reports: dict[str, Any],
     broken: list[Diagnostic],
@@ -275,7 +299,7 @@ def _print_summary(
         return
     _print_tick(run, options)
     if not options.quiet:
-        words = summary_text(run.summary, run.stream.header.joint_units, run.joint_names)
+        words = summary_text(run.summary, run.header.joint_units, run.joint_names)
         print(encodable(words, sys.stdout))
         for path in outputs:
             print(encodable(f"{'written':<12}{path}", sys.stdout))

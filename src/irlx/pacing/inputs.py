@@ -45,6 +45,10 @@ class Inputs:
         index = bisect_right([at for at, _ in trace], time + slack) - 1
         return trace[index][1] if index >= 0 else 0.0
 
+    def knows(self, names: Sequence[str]) -> bool:
+        """Whether anybody may have something to say of an input."""
+        return self.function is not None or self._trace(names) is not None
+
     def until_change(
         self, inputs: Sequence[Sequence[str]], time: float, tick: float, slack: float = 0.0
     ) -> float:

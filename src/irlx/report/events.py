@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from irlx.pacing.rows import MotionRows, PathPart
 from irlx.pacing.slowdown.clock_bounds import Governor
-from irlx.pacing.slowing import Slowing, spans
+from irlx.pacing.slowing import Slowing
 from irlx.robot.limits import JointLimits
 
 SOURCES = ("position", "speed", "acceleration", "braking")
@@ -108,16 +108,41 @@ def _slowed(
     )
 
 
-def limit_events(active: NDArray[np.int8], joint_names: Sequence[str], dt: float) -> tuple[LimitActive, ...]:
-    """Events of a run from its `active` flags (N, n), one row a tick from tick 0, in order of time."""
-    found = [
-        LimitActive(name, SOURCES[abs(flag) - 1], "upper" if flag > 0 else "lower", *span, *_times(span, dt))
-        for joint, name in enumerate(joint_names)
-        for flag in (int(value) for value in np.unique(active[:, joint]) if value)
-        for span in spans(active[:, joint] == flag)
-    ]
-    return tuple(sorted(found, key=lambda event: (event.first_tick, event.joint)))
+class ActiveSpans:
+    """Events of a run from its `active` flags, which come in portions, one row a tick from tick 0 on."""
 
+    def __init__(self, joint_names: Sequence[str], dt: float) -> None:
+        self._names, self._dt = tuple(joint_names), dt
+        self._found: list[LimitActive] = []
+        self._rows = 0
+        self._flags = [0] * len(self._names)
+        """Flag of each joint in the last row, and .."""
+        self._since = [0] * len(self._names)
+        """.. the tick from which on it was that."""
 
-def _times(span: tuple[int, int], dt: float) -> tuple[float, float]:
-    return span[0] * dt, span[1] * dt
+    def take(self, active: NDArray[np.int8]) -> None:
+        """Take the flags (M, n) of the next rows."""
+        if any(self._flags) or active.any():
+            for joint in range(len(self._names)):
+                self._take(joint, active[:, joint])
+        self._rows += len(active)
+
+    def _take(self, joint: int, column: NDArray[np.int8]) -> None:
+        before = np.concatenate([[self._flags[joint]], column[:-1]])
+        for row in np.flatnonzero(column != before).tolist():
+            tick = self._rows + row
+            if self._flags[joint]:
+                self._found.append(self._event(joint, tick - 1))
+            self._flags[joint], self._since[joint] = int(column[row]), tick
+
+    def _event(self, joint: int, last: int) -> LimitActive:
+        flag, first = self._flags[joint], self._since[joint]
+        kind, side = SOURCES[abs(flag) - 1], "upper" if flag > 0 else "lower"
+        return LimitActive(self._names[joint], kind, side, first, last, first * self._dt, last * self._dt)
+
+    @property
+    def events(self) -> tuple[LimitActive, ...]:
+        """All events so far in order of time, those that go on included."""
+        last = self._rows - 1
+        going_on = [self._event(joint, last) for joint, flag in enumerate(self._flags) if flag]
+        return tuple(sorted([*self._found, *going_on], key=lambda event: (event.first_tick, event.joint)))

@@ -8,9 +8,10 @@ from dataclasses import asdict, dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.blocks import CriterionBlock, CyclicBlock, FreezeBlock, MoveBlock, ObstacleBlock
+from irlx.blocks import CriterionBlock, CyclicBlock, FreezeBlock, MoveBlock, ObstacleBlock, SignalBlock
 from irlx.promises import CLOSURE, RETURN
 from irlx.report.events import SOURCES
+from irlx.report.segment import Segment
 from irlx.streams.joint_stream import BlockRecord
 
 Array = NDArray[np.float64]
@@ -69,31 +70,61 @@ class _Standing:
                 self.obstacles[block.name.casefold()] = block.name
 
 
-def returns(
-    records: Sequence[BlockRecord],
-    q: Array,
-    tool: Array,
-    block: NDArray[np.int64],
-    active: NDArray[np.int8],
-    joint_names: Sequence[str],
-) -> tuple[Return, ...]:
-    """Every return of a run with rows q (N, n), tool (N, 7), block ids (N,) and `active` flags (N, n)."""
-    found: list[Return] = []
-    standing = _Standing()
-    for record in records:
-        standing.take(record)
-        cyclic, move = standing.cyclic, record.block
-        if cyclic is None or not isinstance(move, MoveBlock):
-            continue
-        # Ids rise along the rows.
-        last = int(np.searchsorted(block, move.id, side="right")) - 1
-        if block[last] != move.id or not _same_pose(tool[last], tool[cyclic.tick]):
-            continue
-        left = q[last] - q[cyclic.tick]
-        held = _held(standing, move, active[last - 1], left, joint_names)
+class Returns:
+    """Finds the returns of a run while it goes on.
+
+    A move has ended when the next block begins: until then its last row is remembered.
+    """
+
+    def __init__(self, joint_names: Sequence[str]) -> None:
+        self._names = tuple(joint_names)
+        self._found: list[Return] = []
+        self._standing = _Standing()
+        self._stored: tuple[Array, Array] | None = None
+        self._last: tuple[Array, Array] | None = None
+        self._move: MoveBlock | None = None
+        self._end: tuple[int, Array, Array, NDArray[np.int8]] | None = None
+        self._flags = np.zeros(len(self._names), dtype=np.int8)
+
+    def take(self, segment: Segment) -> None:
+        """Take the next segment."""
+        if segment.record is not None and not isinstance(segment.record.block, SignalBlock):
+            self._begin(segment.record)
+        if not len(segment.q):
+            return
+        if self._move is not None and segment.block[-1] == self._move.id:
+            flags = segment.active[-2] if len(segment.q) > 1 else self._flags
+            tick = segment.first_tick + len(segment.q) - 1
+            self._end = tick, segment.q[-1].copy(), segment.tool[-1].copy(), flags.copy()
+        self._last = segment.q[-1].copy(), segment.tool[-1].copy()
+        self._flags = segment.active[-1].copy()
+
+    @property
+    def found(self) -> tuple[Return, ...]:
+        """All returns so far."""
+        return (*self._found, *self._of_last_move())
+
+    def _begin(self, record: BlockRecord) -> None:
+        """The move before has ended, another block begins."""
+        self._found += self._of_last_move()
+        self._end = None
+        self._standing.take(record)
+        if isinstance(record.block, CyclicBlock):
+            self._stored = self._last
+        self._move = record.block if isinstance(record.block, MoveBlock) else None
+
+    def _of_last_move(self) -> list[Return]:
+        """The return that the last move was, if it was one."""
+        cyclic, move, end = self._standing.cyclic, self._move, self._end
+        if cyclic is None or move is None or end is None or self._stored is None:
+            return []
+        tick, q, tool, flags = end
+        if not _same_pose(tool, self._stored[1]):
+            return []
+        left = q - self._stored[0]
+        held = _held(self._standing, move, flags, left, self._names)
         since = cyclic.block.origin.line
-        found.append(Return(move.origin.line, last, since, tuple(left.tolist()), held))
-    return tuple(found)
+        return [Return(move.origin.line, tick, since, tuple(left.tolist()), held)]
 
 
 def _same_pose(one: Array, other: Array) -> bool:

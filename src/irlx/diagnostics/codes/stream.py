@@ -41,4 +41,39 @@ STREAM: tuple[Code, ...] = (
         "run the program again with this irlx; if it fails again, please report it with program and cell",
     ),
     error("IRL720", "{path}: {title} needs {package}: {command}"),
+    error(
+        "IRL725",
+        "this format has no blocks, so that there is nothing to be replayed",
+        "formats with blocks: {known}",
+    ),
+    error(
+        "IRL726",
+        "the recorded execution did not come to its end",
+        "run its program again; only a whole execution is replayed",
+    ),
+    error(
+        "IRL727",
+        "the robot has the joints {found}; those of the recorded one are {expected}",
+        "replay it in a cell whose robot has joints of these names in this order",
+    ),
+    error(
+        "IRL728",
+        "the recorded execution read {recorded} from {name} here, which is {value} now",
+        "give inputs as they were, or run the program, which takes the way that belongs to these",
+    ),
+    error(
+        "IRL730",
+        "it was not made from {name} as it is: its SHA-256 is {found}..., recorded is {recorded}...",
+        "find the file as it was",
+    ),
+    error(
+        "IRL731",
+        "it does not say all that it was made with: {missing}",
+        "make it again with the call that made it",
+    ),
+    error(
+        "IRL732",
+        "made again, the stream differs: {difference}",
+        "install the recorded versions: {software}",
+    ),
 )

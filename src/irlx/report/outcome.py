@@ -1,0 +1,39 @@
+"""What a run has come to, whatever became of its rows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from irlx.diagnostics import Diagnostic
+from irlx.pacing.explanation import TickExplanation
+from irlx.report.events import LimitActive, Slowed
+from irlx.report.summary import Summary
+from irlx.streams.joint_stream import StreamHeader
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Outcome:
+    """Header of its stream, events, summary and warnings of one execution.
+
+    `explanation` is that of the tick asked for with `explain_tick`, None where no motion has it; `output` is
+    what the program wrote to STANDARD_OUT; `files` what was written while it ran.
+    """
+
+    header: StreamHeader
+    summary: Summary
+    events: tuple[LimitActive | Slowed, ...]
+    diagnostics: tuple[Diagnostic, ...]
+    explanation: TickExplanation | None = None
+    output: str = ""
+    files: tuple[Path, ...] = ()
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of the joints in the order of the columns."""
+        return self.header.joint_names
+
+    @property
+    def complete(self) -> bool:
+        """Whether the program came to its end."""
+        return self.summary.complete
