@@ -354,6 +354,41 @@ def test_a_disk_that_fills_up(good: JointStream, tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize("metadata", [True, False])
+def test_a_bag_that_was_cut_is_read_to_its_last_whole_chunk(
+    metadata: bool, gantry_kit, tmp_path: Path
+) -> None:
+    """As a process that was killed leaves it."""
+    stream = moving(gantry_kit, 2, ("a", "b"), rows=4000)
+    write_stream(stream, tmp_path / "a.rosbag")
+    file = tmp_path / "a.rosbag" / "stream.mcap"
+    data = file.read_bytes()
+    file.write_bytes(data[: len(data) * 3 // 4])
+    if not metadata:
+        (tmp_path / "a.rosbag" / "metadata.yaml").unlink()
+    found = read_stream(tmp_path / "a.rosbag")
+    rows = len(found.ticks)
+    assert rows in (1024, 2048, 3072)
+    assert found.q.tobytes() == stream.q[:rows].tobytes()
+    assert not found.complete
+
+
+def test_what_a_killed_process_leaves_is_read(good: JointStream, tmp_path: Path) -> None:
+    writer = open_writer(tmp_path / "a.rosbag", good.header)
+    for record in good.records:
+        rows = good.ticks[writer.rows :] <= record.tick
+        part = slice(writer.rows, writer.rows + int(rows.sum()))
+        writer.samples(good.ticks[part], good.q[part], good.block[part], good.tool[part])
+        writer.block(record)
+    writer._mcap._file.flush()
+    (left,) = tmp_path.iterdir()
+    assert left.suffix == ".rosbag"
+    found = read_stream(left)
+    assert (len(found.ticks), found.records) == (writer.rows, good.records)
+    assert not found.complete
+    writer.abort()
+
+
 @pytest.mark.parametrize("name", ["metadata.yaml", "stream.mcap"])
 def test_a_bag_without_one_of_its_files(name: str, good: JointStream, tmp_path: Path) -> None:
     write_stream(good, tmp_path / "a.rosbag")

@@ -12,6 +12,7 @@ from pathlib import Path
 from irlx.streams.error import cannot_write
 
 _NUMBERS = count(1)
+_LONGEST_ENDING = 16
 
 
 class AtomicFolder:
@@ -27,7 +28,8 @@ class AtomicFolder:
         self._may_replace = may_replace
         try:
             self._target = self._checked(self.path)
-            self.folder = self._beside("part")
+            # With the target's ending, by which what a killed process has left can be read.
+            self.folder = self._beside(f"part{self._target.suffix[:_LONGEST_ENDING]}")
             self.folder.mkdir()
         except (OSError, ValueError) as cause:
             raise cannot_write(self.path, cause) from cause
@@ -64,14 +66,14 @@ class AtomicFolder:
 
     def _beside(self, ending: str) -> Path:
         """A name beside the target that nothing has."""
-        return self._target.parent / f".irlx-{os.getpid()}-{next(_NUMBERS)}.folder.{ending}"
+        return self._target.parent / f".irlx-{os.getpid()}-{next(_NUMBERS)}.{ending}"
 
     def _put_in_place(self) -> None:
         """Rename the folder; no system has one step that replaces a folder with files in it."""
         if not self._target.exists():
             shutil.move(self.folder, self._target)
             return
-        before = self._beside("before")
+        before = self._beside(f"before{self._target.suffix[:_LONGEST_ENDING]}")
         self._target.rename(before)
         try:
             shutil.move(self.folder, self._target)

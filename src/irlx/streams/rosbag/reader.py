@@ -34,10 +34,11 @@ def scan(path: Path) -> Iterator[ScanItem]:
     """Scan of a bag that `RosbagWriter` wrote: block records and rows in the order in which they came.
 
     Needs no package of ROS. Trajectories are passed over: their bytes count in the checksum. A bag states
-    no accelerations; those of the batches are the differences of its velocities. Raises StreamError once
-    what stands before the damage is out: IRL001, IRL002 where the bag cannot be read, IRL701 where it is
-    damaged or not of irlx, IRL702 for a wrong checksum, IRL703 for ticks that do not rise, IRL704 for
-    another number of rows, IRL706 for another version.
+    no accelerations; those of the batches are the differences of its velocities. A bag whose MCAP file was
+    cut is read up to its last whole chunk, the end being incomplete. Raises StreamError once what stands
+    before the damage is out: IRL001, IRL002 where the bag cannot be read, IRL701 where it is damaged or not
+    of irlx, IRL702 for a wrong checksum, IRL703 for ticks that do not rise, IRL704 for another number of
+    rows, IRL705 where not even the header is whole, IRL706 for another version.
     """
     try:
         os.stat(path)
@@ -45,11 +46,12 @@ def scan(path: Path) -> Iterator[ScanItem]:
         raise cannot_read(path, cause) from cause
     if not path.is_dir():
         raise broken(path, FORMAT, "it is a file, a bag is a folder")
-    for name in (MCAP, METADATA):
-        if not (path / name).is_file():
-            raise broken(path, FORMAT, f"{name} is missing")
-    with open_to_read(path / METADATA) as handle:
-        metadata = handle.read(min(os.fstat(handle.fileno()).st_size, _LONGEST_TEXT))
+    if not (path / MCAP).is_file():
+        raise broken(path, FORMAT, f"{MCAP} is missing")
+    metadata = None
+    if (path / METADATA).exists():
+        with open_to_read(path / METADATA) as handle:
+            metadata = handle.read(min(os.fstat(handle.fileno()).st_size, _LONGEST_TEXT))
     with open_to_read(path / MCAP) as handle:
         try:
             yield from _Reader(path, handle, metadata).items()
@@ -61,20 +63,30 @@ def scan(path: Path) -> Iterator[ScanItem]:
             raise broken(path, FORMAT, f"{MCAP}: {cause}") from cause
 
 
+class _EndsEarly(Exception):
+    """The file has fewer bytes than it says."""
+
+
 class _Source:
-    """A file that is read from its beginning on; `crc` and `sum` are those of what was read."""
+    """A file that is read from its beginning on; `crc` and `sum` are those of what was read.
+
+    `sealed` tells whether the file's last bytes are those of a whole one.
+    """
 
     def __init__(self, handle: IO[bytes]) -> None:
         self._handle = handle
         self.left = os.fstat(handle.fileno()).st_size
+        handle.seek(max(0, self.left - len(MAGIC)))
+        self.sealed = handle.read(len(MAGIC)) == MAGIC
+        handle.seek(0)
         self.crc = 0
         self.sum = sha256()
 
     def take(self, length: int) -> bytes:
-        """The next bytes; raises ValueError where there are fewer."""
+        """The next bytes; raises _EndsEarly where there are fewer."""
         data = self._handle.read(length) if length <= self.left else b""
         if len(data) < length:
-            raise ValueError("it ends early")
+            raise _EndsEarly
         self.left -= length
         self.crc = zlib.crc32(data, self.crc)
         self.sum.update(data)
@@ -83,7 +95,7 @@ class _Source:
     def skip(self, length: int, crc: int = 0) -> int:
         """Pass bytes in portions; gives `crc` with them counted in."""
         if length > self.left:
-            raise ValueError("it ends early")
+            raise _EndsEarly
         while length:
             part = self.take(min(length, _PORTION))
             crc = zlib.crc32(part, crc)
@@ -94,7 +106,7 @@ class _Source:
 class _Reader:
     """State of reading one bag."""
 
-    def __init__(self, path: Path, handle: IO[bytes], metadata: bytes) -> None:
+    def __init__(self, path: Path, handle: IO[bytes], metadata: bytes | None) -> None:
         self.path = path
         self.source = _Source(handle)
         self.metadata = metadata
@@ -104,6 +116,16 @@ class _Reader:
         self.end: StreamEnd | None = None
 
     def items(self) -> Iterator[ScanItem]:
+        try:
+            yield from self._whole_items()
+        except _EndsEarly:
+            if self.source.sealed or self.end is not None:
+                raise ValueError("it ends early") from None
+            if self.header is None:
+                raise StreamError(report("IRL705", Place(str(self.path)))) from None
+            yield StreamEnd(False)
+
+    def _whole_items(self) -> Iterator[ScanItem]:
         if self.source.take(len(HEAD)) != HEAD:
             raise ValueError("irlx did not write this file")
         while True:
@@ -213,6 +235,8 @@ class _Reader:
         if length > _LONGEST_TEXT:
             raise ValueError("its metadata are too long")
         found = self.source.take(length)
+        if self.metadata is None:
+            raise ValueError(f"{METADATA} is missing beside it")
         lines = self.metadata.decode().splitlines(keepends=True)[1:]
         words = "".join(line[2:] for line in lines)
         due = text("rosbag2") + mapping({"serialized_metadata": words})
@@ -224,7 +248,7 @@ class _Reader:
         if length != 4 or self.source.take(4) != struct.pack("<I", crc):
             raise ValueError("the checksum of its data is wrong")
         if self.source.left < _TAIL:
-            raise ValueError("it ends early")
+            raise _EndsEarly
         self.source.crc = 0
         self.source.skip(self.source.left - 4 - len(MAGIC))
         crc = self.source.crc
