@@ -40,7 +40,7 @@ class ParquetWriter(StreamWriter):
         self._schema = schema_of(header)
         self._file = AtomicFile(path)
         with self._writing():
-            # A dictionary of numbers would take -0.0 for 0.0; of blocks there are few.
+            # Numbers hardly repeat, ids of blocks do.
             self._columns = pq.ParquetWriter(
                 self._file.handle,
                 self._schema,
