@@ -19,7 +19,9 @@ def add_parser(commands: Any) -> None:
         epilog=_EXAMPLE,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("stream", metavar="OUT", help="stream file: .irdata, .npz, .jsonl or .csv")
+    parser.add_argument(
+        "stream", metavar="OUT", help="stream: .irdata, .npz, .jsonl, .csv, .parquet, .rosbag"
+    )
     parser.add_argument("--cell", metavar="C.toml", help="cell file with the robot (default: as recorded)")
     parser.add_argument(
         "--program", metavar="P.irl", help="require that the stream's blocks are those of this program"

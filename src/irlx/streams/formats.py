@@ -59,7 +59,8 @@ KNOWN_ENDINGS: tuple[str, ...] = tuple(FORMATS)
 def write_stream(stream: JointStream, path: str | os.PathLike[str]) -> None:
     """Write a stream in the format of the path's ending; the file appears whole or not at all.
 
-    Raises StreamError: IRL004 for an unknown ending, IRL003 where the file cannot be written.
+    Raises StreamError: IRL004 for an unknown ending, IRL003 where the file cannot be written, IRL720 where
+    the format needs a package that is not installed.
     """
     with open_writer(path, stream.header) as writer:
         for item in in_order(stream):
@@ -69,7 +70,7 @@ def write_stream(stream: JointStream, path: str | os.PathLike[str]) -> None:
 def open_writer(path: str | os.PathLike[str], header: StreamHeader) -> StreamWriter:
     """A writer in the format of the path's ending, to which a stream is given as it comes.
 
-    Raises StreamError: IRL004 for an unknown ending, IRL003 where no file can be written there.
+    Raises StreamError: IRL004 for an unknown ending, IRL003 where no file can be written there, IRL720.
     """
     return format_of(path, "IRL004").writer(Path(path), header)
 
@@ -96,7 +97,7 @@ def scan_stream(path: str | os.PathLike[str]) -> Iterator[ScanItem]:
     """Scan of a stream file in the format of the path's ending, with little memory whatever its size.
 
     The header comes first, the end last, block records and batches of rows in between. Raises
-    StreamError: IRL707 for an unknown ending at once, otherwise what the scanner of the format raises,
+    StreamError: IRL707 for an unknown ending and IRL720 at once, otherwise what the scanner of the format raises,
     when what stands before the damage has been given out.
     """
     return format_of(path, "IRL707").scan(Path(path))
