@@ -163,9 +163,9 @@ def judge(ending: str, seed: int, whole: JointStream, data: bytes, path: Path) -
 
 
 def campaign(ending: str, seeds: range, folder: Path) -> dict[str, int]:
-    whole = small()
     path = folder / f"a{ending}"
-    write_stream(whole, path)
+    write_stream(small(), path)
+    whole = read_stream(path)
     data = the_file(path).read_bytes()
     found: dict[str, int] = {}
     for seed in seeds:
