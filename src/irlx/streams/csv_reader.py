@@ -15,14 +15,12 @@ from irlx.diagnostics import Place, report
 from irlx.streams.csv_writer import column_line, comment
 from irlx.streams.error import StreamError, broken, open_to_read
 from irlx.streams.header_plain import PlainFormError, VersionError, header_from_plain
-from irlx.streams.irdata.numbers import counts_of, floats_of
 from irlx.streams.joint_stream import FORMAT_VERSION, Floats, JointStream, StreamHeader
+from irlx.streams.numbers import NUMBER_CHARACTERS, table_of
 from irlx.streams.scan import RowBatch, ScanItem, StatedRates, StreamEnd, collect, rising_rows
 
-_PORTION = 1 << 20
-_ALLOWED = b"0123456789+-.e"
+_PORTION = 1 << 19
 _LARGEST = 2**53
-_COMMA, _NEWLINE = b",\n"
 _END = b"# end: "
 _SPLITS = np.arange(1, 4)
 
@@ -36,7 +34,7 @@ def read_csv(path: str | os.PathLike[str]) -> JointStream:
 
 
 def scan_csv(path: str | os.PathLike[str]) -> Iterator[ScanItem]:
-    """Scan of a CSV file that `CsvWriter` wrote, without blocks, about 1 MB of text at a time.
+    """Scan of a CSV file that `CsvWriter` wrote, without blocks, about 0.5 MB of text at a time.
 
     A file without its closing comment was cut: it is read up to its last whole line, the end being
     incomplete. Raises StreamError with the codes of `scan_irdata` once the rows before the damage are
@@ -93,7 +91,9 @@ class _Reader:
 
     def _head_lines(self) -> Iterator[bytes]:
         while text := self.handle.readline():
-            yield from self._whole_lines(text).splitlines(keepends=True)
+            whole = self._whole_lines(text)
+            if whole:
+                yield whole
 
     def _texts(self) -> Iterator[bytes]:
         """Whole lines of samples in portions; a comment in the file's last line becomes `closing`."""
@@ -110,7 +110,7 @@ class _Reader:
 
     def _passing(self, text: bytes) -> Iterator[bytes]:
         yield text
-        lines = len(text.splitlines())
+        lines = text.count(b"\n")
         self.line += lines
         self.samples += lines
         self.digest.update(text)
@@ -122,7 +122,7 @@ class _Reader:
         self.rest = _last_line(text)
         whole = text[: len(text) - len(self.rest)]
         if self.rest.startswith(_END) and b"}" in self.rest:
-            number = self.line + len(whole.splitlines())
+            number = self.line + whole.count(b"\n")
             raise self._broken("the closing comment does not end its line", number)
         return whole
 
@@ -150,16 +150,16 @@ class _Reader:
     def _table(self, text: bytes, columns: int) -> tuple[Floats, StreamError | None]:
         """Numbers of the lines before the first that has other things, and the fault of that line."""
         try:
-            return _plain_table(text, columns), None
+            return table_of(text, columns), None
         except ValueError:
             # Line by line more forms of numbers are allowed, and the line that is wrong is found.
             pass
         rows: list[list[float]] = []
         fault = None
-        for line in text.splitlines(keepends=True):
-            words = line.removesuffix(b"\n").split(b",")
+        for line in text.split(b"\n")[:-1]:
+            words = line.split(b",")
             try:
-                if len(words) != columns or b"".join(words).translate(None, _ALLOWED):
+                if len(words) != columns or b"".join(words).translate(None, NUMBER_CHARACTERS):
                     raise ValueError
                 rows.append([float(word) for word in words])
             except ValueError:
@@ -194,9 +194,8 @@ class _Reader:
 
 
 def _last_line(text: bytes) -> bytes:
-    """The last line of a text, line end included; a carriage return ends lines as well."""
-    lines = text[text.rfind(b"\n", 0, -1) + 1 :].splitlines(keepends=True)
-    return lines[-1] if lines else b""
+    """The last line of a text, line end included."""
+    return text[text.rfind(b"\n", 0, -1) + 1 :]
 
 
 def _header_of(path: Path, comments: list[bytes]) -> StreamHeader:
@@ -217,21 +216,3 @@ def _header_of(path: Path, comments: list[bytes]) -> StreamHeader:
         ) from cause
     except PlainFormError as cause:
         raise broken(path, "CSV", str(cause), "header") from cause
-
-
-def _plain_table(text: bytes, columns: int) -> Floats:
-    """Numbers (N, columns) of whole lines as `CsvWriter` makes them; raises ValueError for others."""
-    bytes_ = np.frombuffer(text, dtype=np.uint8)
-    stops = np.flatnonzero((bytes_ == _COMMA) | (bytes_ == _NEWLINE))
-    if len(stops) % columns:
-        raise ValueError("a line has another number of fields")
-    starts = np.concatenate(([0], stops[:-1] + 1)).reshape(-1, columns)
-    ends = stops.reshape(-1, columns)
-    if text.count(b"\n") != len(ends) or (bytes_[ends[:, -1]] != _NEWLINE).any():
-        raise ValueError("a line has another number of fields")
-    table = np.empty(ends.shape)
-    heads = [0, 2]
-    table[:, heads] = counts_of(text, starts[:, heads], ends[:, heads])
-    for part in (slice(1, 2), slice(3, None)):
-        table[:, part] = floats_of(text, starts[:, part], ends[:, part], _ALLOWED)
-    return table

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from irlx.streams.header_plain import header_to_plain
-from irlx.streams.irdata.digits import FIELD, fill_fields
 from irlx.streams.joint_stream import BlockRecord, StreamHeader
+from irlx.streams.numbers import texts_of, texts_of_rows
 from irlx.streams.rates import Rates
 from irlx.streams.scan import RowBatch, StatedRates
 from irlx.streams.text_writer import TextWriter
@@ -71,12 +71,7 @@ def column_line(header: StreamHeader) -> bytes:
 
 
 def _lines(batch: RowBatch, rates: StatedRates) -> bytes:
-    """Lines of rows, numbers with 17 digits, as in IRDATA-like records."""
-    values = np.concatenate((batch.q, rates.qd, rates.qdd, batch.tool), axis=1)
-    lines = np.empty(len(values), dtype=[("numbers", FIELD, (values.shape[1],)), ("end", "S1")])
-    fill_fields(lines["numbers"], values)
-    lines["end"] = b"\n"
-    tails = lines.view(f"S{lines.dtype.itemsize}").tolist()
-    heads = zip(batch.ticks.tolist(), rates.t.tolist(), batch.block.tolist(), tails, strict=True)
-    # The fields are padded to one width, which a CSV has no use for.
-    return b"".join([b"%d,%a,%d%b" % head for head in heads]).translate(None, b" ")
+    """Lines of rows, numbers with as few digits as they take."""
+    tails = texts_of_rows(np.concatenate((batch.q, rates.qd, rates.qdd, batch.tool), axis=1))
+    heads = zip(batch.ticks.tolist(), texts_of(rates.t), batch.block.tolist(), tails, strict=True)
+    return b"".join([b"%d,%b,%d,%b\n" % head for head in heads])

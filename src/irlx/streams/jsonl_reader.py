@@ -50,6 +50,7 @@ class _Reader:
         self.line = 0
         self.samples = 0
         self.last_tick = -1
+        self.last_block_tick = 0
         self.header: StreamHeader | None = None
         self.end: dict[str, Any] | None = None
 
@@ -86,10 +87,7 @@ class _Reader:
         if fault is not None:
             return [], fault
         if lines[0].startswith(b'{"record"'):
-            try:
-                return [record_from_plain(_entry(lines[0], "record"))], None
-            except (_LineError, PlainFormError) as cause:
-                return [], self._broken(str(cause), first)
+            return self._record(lines[0])
         return self._rows(lines, first)
 
     def _header(self, line: bytes) -> StreamHeader:
@@ -104,6 +102,17 @@ class _Reader:
             raise self._broken(str(cause), 1) from cause
         self.digest.update(line)
         return self.header
+
+    def _record(self, line: bytes) -> tuple[list[ScanItem], StreamError | None]:
+        """A block record, or what is wrong with it."""
+        try:
+            record = record_from_plain(_entry(line, "record"))
+        except (_LineError, PlainFormError) as cause:
+            return [], self._broken(str(cause), self.line)
+        if record.tick < self.last_block_tick:
+            return [], self._broken(f"its tick {record.tick} is before that of the block above", self.line)
+        self.last_block_tick = record.tick
+        return [record], None
 
     def _rows(self, lines: list[bytes], first: int) -> tuple[list[ScanItem], StreamError | None]:
         """Rows of sample lines before the first that is wrong, and what is wrong with that one."""

@@ -6,17 +6,17 @@ import json
 import os
 from typing import Any
 
-import numpy as np
-
 from irlx.streams.header_plain import header_to_plain, record_to_plain
-from irlx.streams.irdata.digits import FIELD, fill_fields
-from irlx.streams.joint_stream import BlockRecord, Floats, StreamHeader
+from irlx.streams.joint_stream import BlockRecord, StreamHeader
+from irlx.streams.numbers import texts_of, texts_of_rows
 from irlx.streams.rates import Rates
 from irlx.streams.scan import RowBatch, StatedRates
 from irlx.streams.text_writer import TextWriter
 
 SAMPLE_KEYS = ("tick", "t", "block", "q", "qd", "qdd", "tool")
 """Entries of a sample, in the order of the file."""
+
+_SAMPLE = b'{"tick":%d,"t":%b,"block":%d,"q":[%b],"qd":[%b],"qdd":[%b],"tool":[%b]}\n'
 
 
 class JsonlWriter(TextWriter):
@@ -47,18 +47,7 @@ def line_of(key: str, value: Any) -> bytes:
 
 
 def _lines(batch: RowBatch, rates: StatedRates) -> bytes:
-    """Lines of samples, numbers with 17 digits, as in IRDATA-like records."""
-    vectors: dict[str, Floats] = {"q": batch.q, "qd": rates.qd, "qdd": rates.qdd, "tool": batch.tool}
-    kinds: list[Any] = []
-    for key, values in vectors.items():
-        kinds += [(f"{key} begins", "S9"), (key, FIELD, (values.shape[1],)), (f"{key} ends", "S1")]
-    table = np.empty(len(batch.ticks), dtype=[*kinds, ("end", "S2")])
-    for key, values in vectors.items():
-        table[f"{key} begins"], table[f"{key} ends"] = f',"{key}":['.encode(), b"]"
-        fill_fields(table[key], values)
-    table["end"] = b"}\n"
-    tails = table.view(f"S{table.dtype.itemsize}").tolist()
-    heads = zip(batch.ticks.tolist(), rates.t.tolist(), batch.block.tolist(), tails, strict=True)
-    text = b"".join([b'{"tick":%d,"t":%a,"block":%d%b' % head for head in heads])
-    # Fields are padded to one width and begin with a comma, the first of a list as well.
-    return text.translate(None, b" \0").replace(b"[,", b"[")
+    """Lines of samples, numbers with as few digits as they take."""
+    vectors = (texts_of_rows(values) for values in (batch.q, rates.qd, rates.qdd, batch.tool))
+    rows = zip(batch.ticks.tolist(), texts_of(rates.t), batch.block.tolist(), *vectors, strict=True)
+    return b"".join([_SAMPLE % row for row in rows])

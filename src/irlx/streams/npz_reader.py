@@ -11,6 +11,7 @@ import zipfile
 import zlib
 from collections.abc import Iterator
 from contextlib import ExitStack
+from itertools import pairwise
 from math import prod
 from pathlib import Path
 from typing import IO, Any
@@ -120,6 +121,9 @@ def _meta(archive: zipfile.ZipFile) -> tuple[StreamHeader, list[BlockRecord], In
     if not isinstance(meta["records"], list):
         raise PlainFormError("records: needs a list")
     records = [record_from_plain(record) for record in meta["records"]]
+    for record, behind in pairwise(records):
+        if behind.tick < record.tick:
+            raise PlainFormError(f"records: tick {behind.tick} follows tick {record.tick}")
     if type(meta["complete"]) is not bool:
         raise PlainFormError("complete: needs true or false")
     return header, records, _runs(meta["ticks"]), meta["complete"]

@@ -7,20 +7,18 @@ from itertools import count
 import numpy as np
 
 from irlx.streams.irdata.codes import SAMPLE
-from irlx.streams.irdata.digits import FIELD, fill_fields
-from irlx.streams.irdata.numbers import counts_of, floats_of
 from irlx.streams.irdata.record import LINE_END, RecordError
 from irlx.streams.joint_stream import Floats, Integers
+from irlx.streams.numbers import NUMBER_CHARACTERS, table_of, texts_of_rows
 from irlx.streams.scan import RowBatch
 
 MARK = f", {SAMPLE}, ".encode()
 """What makes a line a sample: no other record has this after its number."""
 
 _INTEGER_COLUMNS = 4
-_ALLOWED = b"0123456789+-.e "
+_ALLOWED = NUMBER_CHARACTERS + b" "
 _LARGEST = 2**53
 _LONGEST_NUMBER = 24
-_COMMA, _BLANK, _SEMICOLON, _NEWLINE = b", ;\n"
 # Few lines are read sooner one by one than by operations on arrays.
 _MANY = 32
 
@@ -32,15 +30,9 @@ def is_sample(line: bytes) -> bool:
 
 def samples_text(first: int, batch: RowBatch) -> bytes:
     """Lines of the rows of a batch, numbered from `first`: tick, block id, joint values, tool pose."""
-    values = np.concatenate([batch.q, batch.tool], axis=1)
-    table = np.empty(
-        len(values), dtype=[("numbers", FIELD, (values.shape[1],)), ("end", f"S{len(LINE_END)}")]
-    )
-    fill_fields(table["numbers"], values)
-    table["end"] = LINE_END
-    tails = table.view(f"S{table.dtype.itemsize}").tolist()
+    tails = texts_of_rows(np.concatenate([batch.q, batch.tool], axis=1), b", ")
     heads = zip(count(first), batch.ticks.tolist(), batch.block.tolist(), tails, strict=False)
-    return b"".join([b"%d, 900, %d, %d%b" % head for head in heads])
+    return b"".join([b"%d, 900, %d, %d, %b ;\n" % head for head in heads])
 
 
 def parse_samples(lines: list[bytes], first: int, joints: int) -> RowBatch:
@@ -74,21 +66,14 @@ def _many_numbers(lines: list[bytes], columns: int) -> tuple[Integers, Floats]:
     text = b"".join(lines)
     if not text.endswith(b"\n"):
         text += b"\n"
-    bytes_ = np.frombuffer(text, dtype=np.uint8)
-    separators, breaks = np.flatnonzero(bytes_ == _COMMA), np.flatnonzero(bytes_ == _NEWLINE)
-    if len(breaks) != len(lines) or len(separators) != len(lines) * (columns - 1):
-        raise ValueError("a line has another number of fields")
-    commas = separators.reshape(len(lines), columns - 1)
-    begins = np.concatenate(([0], breaks[:-1] + 1))
-    starts = np.column_stack([begins, commas + 2])
-    ends = np.column_stack([commas, breaks - 2])
-    in_lines = (starts[:, 0] <= commas[:, 0]) & (commas[:, -1] < breaks)
-    blanks = (bytes_[commas + 1] == _BLANK).all() and (bytes_[breaks - 2] == _BLANK).all()
-    if not (in_lines.all() and blanks and (bytes_[breaks - 1] == _SEMICOLON).all()):
+    ends = {text.count(end) for end in (LINE_END, b";", b"\n")}
+    if ends != {len(lines)} or text.count(b",") != text.count(b", "):
         raise ValueError("a line has another form")
-    split = _INTEGER_COLUMNS
-    heads = counts_of(text, starts[:, :split], ends[:, :split])
-    return heads, floats_of(text, starts[:, split:], ends[:, split:], _ALLOWED)
+    table = table_of(text.replace(LINE_END, b"\n"), columns)
+    heads = table[:, :_INTEGER_COLUMNS]
+    if not ((heads >= 0) & (heads < _LARGEST) & (heads == np.floor(heads))).all():
+        raise ValueError("a count is none")
+    return heads.astype(np.int64), table[:, _INTEGER_COLUMNS:]
 
 
 def _few_numbers(lines: list[bytes], columns: int) -> tuple[Integers, Floats]:

@@ -1,0 +1,43 @@
+"""Float64 <-> decimal text, whole arrays at a time, to the same 64 bits.
+
+Numbers are written with as few digits as read back to the same value, and read to the nearest: by orjson.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import orjson
+
+from irlx.streams.joint_stream import Floats
+
+NUMBER_CHARACTERS = b"0123456789+-.e"
+"""All that a number is made of."""
+
+
+def texts_of_rows(values: Floats, between: bytes = b",") -> list[bytes]:
+    """Text of each row of finite values (N, n), `between` its numbers; each has a point or an exponent."""
+    if not len(values):
+        return []
+    text = orjson.dumps(np.ascontiguousarray(values), option=orjson.OPT_SERIALIZE_NUMPY)
+    if between != b",":
+        text = text.replace(b",", between)
+    return text[2:-2].split(b"]" + between + b"[")
+
+
+def texts_of(values: Floats) -> list[bytes]:
+    """Text of each of finite values (N,)."""
+    return orjson.dumps(values, option=orjson.OPT_SERIALIZE_NUMPY)[1:-1].split(b",") if len(values) else []
+
+
+def table_of(text: bytes, columns: int) -> Floats:
+    """Values (N, columns) of lines, each ended by a line feed: numbers with commas between, blanks allowed.
+
+    Raises ValueError for whatever else.
+    """
+    if text.translate(None, NUMBER_CHARACTERS + b", \n"):
+        raise ValueError("there are other characters than those of numbers")
+    rows = orjson.loads(b"[[" + text.removesuffix(b"\n").replace(b"\n", b"],[") + b"]]")
+    table = np.array(rows, dtype=np.float64)
+    if table.shape[1:] != (columns,):
+        raise ValueError("a line has another number of fields")
+    return table
