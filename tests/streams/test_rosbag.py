@@ -2,7 +2,6 @@
 
 import json
 import shutil
-import sys
 import tracemalloc
 import zlib
 from pathlib import Path
@@ -18,6 +17,7 @@ from irlx.streams import (
     JointStream,
     RowBatch,
     StreamError,
+    StreamWriter,
     open_writer,
     read_stream,
     scan_stream,
@@ -470,10 +470,21 @@ def test_fewer_samples_than_said(good: JointStream, tmp_path: Path) -> None:
     assert caught.value.reason.code == "IRL704"
 
 
+@pytest.mark.parametrize("ending", [".parquet", ".rosbag"])
+def test_blocks_whose_ticks_fall(ending: str, good: JointStream, tmp_path: Path, monkeypatch) -> None:
+    falling = tuple(BlockRecord(9 - at, record.block) for at, record in enumerate(good.records[:2]))
+    stream = JointStream(good.header, falling, good.ticks, good.q, good.block, good.tool, True)
+    monkeypatch.setattr(StreamWriter, "block", lambda writer, record: writer._put_block(record))
+    write_stream(stream, tmp_path / f"a{ending}")
+    with pytest.raises(StreamError, match=r"tick 8 follows (one of )?tick 9") as caught:
+        read_stream(tmp_path / f"a{ending}")
+    assert caught.value.reason.code == "IRL701"
+
+
 def test_rows_that_are_not_finite(good: JointStream, tmp_path: Path, monkeypatch) -> None:
     q = good.q.copy()
     q[40, 2] = np.inf
-    monkeypatch.setattr(sys.modules["irlx.streams.writer"].StreamWriter, "_check", lambda *_: None)
+    monkeypatch.setattr(StreamWriter, "_check", lambda *_: None)
     with np.errstate(invalid="ignore"):
         write_stream(
             JointStream(good.header, (), good.ticks, q, good.block, good.tool, True), tmp_path / "a.rosbag"

@@ -48,8 +48,9 @@ def add_parser(commands: Any) -> None:
         action="append",
         default=[],
         metavar="OUT",
-        help="stream, format by its ending: .irdata, .npz, .jsonl, .csv, .parquet, .rosbag; may be given several "
-        "times (default: P.irdata beside the program, or in the working folder; of a replay P.replay.irdata)",
+        help="stream, format by its ending: .irdata, .npz, .jsonl, .csv, .parquet, .rosbag; may be given "
+        "several times (default: P.irdata beside the program, or in the working folder; of a replay "
+        "P.replay.irdata)",
     )
     parser.add_argument("--tick", type=float, metavar="MS", help="duration of a tick (default: the cell's)")
     parser.add_argument(

@@ -67,7 +67,7 @@ class Run(Outcome):
         return signals_of(self.stream.records, self.stream.dt)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the stream in the format of the path's ending: .irdata, .npz, .jsonl, .csv, .parquet, .rosbag.
+        """Write the stream in the format of the ending: .irdata, .npz, .jsonl, .csv, .parquet, .rosbag.
 
         The file, or the folder of a .rosbag, appears whole or not at all. Raises StreamError: IRL003 not
         writable, IRL004 unknown ending, IRL720 an extra is missing.

@@ -97,8 +97,8 @@ def scan_stream(path: str | os.PathLike[str]) -> Iterator[ScanItem]:
     """Scan of a stream file in the format of the path's ending, with little memory whatever its size.
 
     The header comes first, the end last, block records and batches of rows in between. Raises
-    StreamError: IRL707 for an unknown ending and IRL720 at once, otherwise what the scanner of the format raises,
-    when what stands before the damage has been given out.
+    StreamError: IRL707 for an unknown ending and IRL720 at once, otherwise what the scanner of the format
+    raises, when what stands before the damage has been given out.
     """
     return format_of(path, "IRL707").scan(Path(path))
 

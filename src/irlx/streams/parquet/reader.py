@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 from typing import IO, Any
 
@@ -14,7 +15,7 @@ import pyarrow.parquet as pq
 from irlx.diagnostics import Place, report
 from irlx.streams.error import StreamError, broken, open_to_read
 from irlx.streams.header_plain import PlainFormError, VersionError, header_from_plain, record_from_plain
-from irlx.streams.joint_stream import FORMAT_VERSION, Integers, StreamHeader
+from irlx.streams.joint_stream import FORMAT_VERSION, BlockRecord, Integers, StreamHeader
 from irlx.streams.parquet.table import END, HEADER, RECORDS, Digest, rows_of, schema_of
 from irlx.streams.scan import ScanItem, StreamEnd, rising_rows
 
@@ -54,9 +55,7 @@ def _items(path: Path, handle: IO[bytes]) -> Iterator[ScanItem]:
     with pq.ParquetFile(handle, **options) as file:
         texts = _texts(file)
         header = header_from_plain(json.loads(texts[HEADER]))
-        records = json.loads(texts[RECORDS])
-        if not isinstance(records, list):
-            raise PlainFormError("records: needs a list")
+        records = _records(texts[RECORDS])
         samples, complete, said = _end(texts[END])
         _check_columns(file, header)
         found = file.metadata.num_rows
@@ -64,7 +63,7 @@ def _items(path: Path, handle: IO[bytes]) -> Iterator[ScanItem]:
             where = Place(str(path))
             raise StreamError(report("IRL704", where, said=samples, what="samples", found=found))
         yield header
-        yield from [record_from_plain(record) for record in records]
+        yield from records
         digest = Digest()
         yield from _rows(path, file, header, digest)
         expected = digest.end(texts[HEADER], texts[RECORDS], samples, complete)
@@ -105,6 +104,17 @@ def _texts(file: Any) -> dict[bytes, bytes]:
         if key not in found:
             raise PlainFormError(f"{key.decode()} is missing: irlx did not write this file")
     return dict(found)
+
+
+def _records(text: bytes) -> list[BlockRecord]:
+    plain = json.loads(text)
+    if not isinstance(plain, list):
+        raise PlainFormError("records: needs a list")
+    records = [record_from_plain(record) for record in plain]
+    for record, behind in pairwise(records):
+        if behind.tick < record.tick:
+            raise PlainFormError(f"records: tick {behind.tick} follows tick {record.tick}")
+    return records
 
 
 def _end(text: bytes) -> tuple[int, bool, str]:

@@ -112,6 +112,7 @@ class _Reader:
         self.metadata = metadata
         self.header: StreamHeader | None = None
         self.last_tick = -1
+        self.last_block_tick = 0
         self.samples = 0
         self.end: StreamEnd | None = None
 
@@ -215,9 +216,13 @@ class _Reader:
 
     def _record(self, plain: object) -> BlockRecord:
         try:
-            return record_from_plain(plain)
+            record = record_from_plain(plain)
         except PlainFormError as cause:
-            raise ValueError(f"a record of tick {self.last_tick} or later: {cause}") from cause
+            raise ValueError(f"a record of tick {self.last_block_tick} or later: {cause}") from cause
+        if record.tick < self.last_block_tick:
+            raise ValueError(f"a record of tick {record.tick} follows one of tick {self.last_block_tick}")
+        self.last_block_tick = record.tick
+        return record
 
     def _take_end(self, plain: object, expected: str) -> None:
         if not isinstance(plain, dict) or {key: type(value) for key, value in plain.items()} != _END_KINDS:
