@@ -21,7 +21,7 @@ from irlx.streams.row_portions import RowPortions
 from irlx.streams.scan import RowBatch
 from irlx.streams.writer import StreamWriter
 
-ROWS_OF_A_GROUP = 1 << 16
+ROWS_OF_A_GROUP = 1 << 15
 
 
 class ParquetWriter(StreamWriter):
