@@ -51,7 +51,7 @@ def test_round_trip(ending: str, good: JointStream, tmp_path: Path) -> None:
 
 @pytest.mark.filterwarnings("ignore:overflow encountered:RuntimeWarning")
 @pytest.mark.filterwarnings("ignore:invalid value encountered:RuntimeWarning")
-@pytest.mark.parametrize("ending", [".irdata", ".npz"])
+@pytest.mark.parametrize("ending", [".irdata", ".npz", ".jsonl"])
 def test_awkward_values_and_names(ending: str, gantry_kit, tmp_path: Path) -> None:
     stream = awkward(gantry_kit)
     write_stream(stream, tmp_path / f"a{ending}")
