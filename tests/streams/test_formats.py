@@ -67,7 +67,7 @@ def test_awkward_names_where_rates_are_stated(ending: str, gantry_kit, tmp_path:
     stream = JointStream(odd.header, (), odd.ticks, q, odd.block, odd.tool, False)
     write_stream(stream, tmp_path / f"a{ending}")
     assert_same(stream, read_stream(tmp_path / f"a{ending}"), False)
-    with pytest.raises(StreamError, match="IRL708.*rates"):
+    with pytest.raises(StreamError, match=r"IRL708.*rates"):
         write_stream(odd, tmp_path / f"b{ending}")
     assert not (tmp_path / f"b{ending}").exists()
 
