@@ -223,7 +223,7 @@ def test_waits_that_are_none_fail(tmp_path: Path) -> None:
 
 
 @pytest.mark.req("STR-03")
-@pytest.mark.parametrize("ending", [".irdata", ".npz"])
+@pytest.mark.parametrize("ending", [".irdata", ".npz", ".jsonl"])
 def test_signals_survive_a_file(tmp_path: Path, ending: str) -> None:
     run = ran(tmp_path, TENDING, "part = [[1, true]]\nAIN_1 = [[0, 3]]\nready = [[20, true]]\n")
     run.save(tmp_path / f"s{ending}")

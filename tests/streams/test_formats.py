@@ -59,12 +59,18 @@ def test_awkward_values_and_names(ending: str, gantry_kit, tmp_path: Path) -> No
     assert_same(stream, read_stream(tmp_path / f"a{ending}"), True)
 
 
-def test_awkward_names_in_csv(gantry_kit, tmp_path: Path) -> None:
+@pytest.mark.filterwarnings("ignore:overflow encountered:RuntimeWarning")
+@pytest.mark.filterwarnings("ignore:invalid value encountered:RuntimeWarning")
+@pytest.mark.parametrize("ending", [".csv", ".jsonl"])
+def test_awkward_names_where_rates_are_stated(ending: str, gantry_kit, tmp_path: Path) -> None:
     odd = awkward(gantry_kit)
     q = np.where(np.abs(odd.q) > 1e20, 1e-320, odd.q)
     stream = JointStream(odd.header, (), odd.ticks, q, odd.block, odd.tool, False)
-    write_stream(stream, tmp_path / "a.csv")
-    assert_same(stream, read_stream(tmp_path / "a.csv"), False)
+    write_stream(stream, tmp_path / f"a{ending}")
+    assert_same(stream, read_stream(tmp_path / f"a{ending}"), False)
+    with pytest.raises(StreamError, match=r"IRL708.*rates"):
+        write_stream(odd, tmp_path / f"b{ending}")
+    assert not (tmp_path / f"b{ending}").exists()
 
 
 @pytest.mark.parametrize("ending", KNOWN_ENDINGS)

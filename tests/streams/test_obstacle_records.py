@@ -28,7 +28,7 @@ def stream(gantry_kit) -> JointStream:
     return made
 
 
-@pytest.mark.parametrize("ending", [".irdata", ".npz"])
+@pytest.mark.parametrize("ending", [".irdata", ".npz", ".jsonl"])
 def test_nothing_of_them_is_lost(stream: JointStream, ending: str, tmp_path: Path) -> None:
     path = tmp_path / f"a{ending}"
     write_stream(stream, path)

@@ -44,7 +44,7 @@ def test_good_stream_passes(good: JointStream, robot) -> None:
     assert tuple(check.name for check in report.checks) == CHECKS
 
 
-@pytest.mark.parametrize("ending", [".irdata", ".npz", ".csv"])
+@pytest.mark.parametrize("ending", [".irdata", ".npz", ".jsonl", ".csv"])
 def test_written_streams_pass(ending: str, good: JointStream, robot, tmp_path: Path) -> None:
     write_stream(good, tmp_path / f"a{ending}")
     stream = read_stream(tmp_path / f"a{ending}")

@@ -16,7 +16,6 @@ import numpy as np
 from irlx.streams.header_plain import header_to_plain
 from irlx.streams.joint_stream import BlockRecord, StreamHeader
 from irlx.streams.numbers import texts_of, texts_of_rows
-from irlx.streams.rates import Rates
 from irlx.streams.scan import RowBatch, StatedRates
 from irlx.streams.text_writer import TextWriter
 
@@ -32,14 +31,13 @@ class CsvWriter(TextWriter):
 
     def __init__(self, path: str | os.PathLike[str], header: StreamHeader) -> None:
         super().__init__(path, header)
-        self._rates = Rates(header)
         self._write(_head(header))
 
     def _put_block(self, record: BlockRecord) -> None:
         """CSV has no blocks."""
 
     def _put_rows(self, batch: RowBatch) -> None:
-        self._write(_lines(batch, self._rates.of(batch.ticks, batch.q)))
+        self._write(_lines(batch, self._rates_of(batch)))
 
     def _put_end(self, complete: bool) -> None:
         end = {"samples": self.rows, "complete": complete, "sha256": self._digest.hexdigest()}

@@ -9,7 +9,6 @@ from typing import Any
 from irlx.streams.header_plain import header_to_plain, record_to_plain
 from irlx.streams.joint_stream import BlockRecord, StreamHeader
 from irlx.streams.numbers import texts_of, texts_of_rows
-from irlx.streams.rates import Rates
 from irlx.streams.scan import RowBatch, StatedRates
 from irlx.streams.text_writer import TextWriter
 
@@ -27,14 +26,13 @@ class JsonlWriter(TextWriter):
 
     def __init__(self, path: str | os.PathLike[str], header: StreamHeader) -> None:
         super().__init__(path, header)
-        self._rates = Rates(header)
         self._write(line_of("header", header_to_plain(header)))
 
     def _put_block(self, record: BlockRecord) -> None:
         self._write(line_of("record", record_to_plain(record)))
 
     def _put_rows(self, batch: RowBatch) -> None:
-        self._write(_lines(batch, self._rates.of(batch.ticks, batch.q)))
+        self._write(_lines(batch, self._rates_of(batch)))
 
     def _put_end(self, complete: bool) -> None:
         end = {"samples": self.rows, "complete": complete, "sha256": self._digest.hexdigest()}
