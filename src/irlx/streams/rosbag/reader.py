@@ -182,7 +182,7 @@ class _Reader:
             stated = self.accelerations.of(ticks, qd)
         batch = RowBatch(ticks, q, block, tool, StatedRates(stated.t, qd, stated.qd))
         rows = rising_rows(ticks, self.last_tick)
-        good = np.asarray(np.isfinite(q).all(axis=1) & np.isfinite(tool).all(axis=1))
+        good = np.isfinite(np.concatenate([q, qd, tool], axis=1)).all(axis=1)
         whole = rows if good[:rows].all() else int(np.argmin(good[:rows]))
         if whole:
             self.last_tick = int(ticks[whole - 1])

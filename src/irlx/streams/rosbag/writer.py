@@ -41,7 +41,7 @@ class RosbagWriter(StreamWriter):
     """Writes one stream as a ROS 2 bag; the same stream gives the same bytes.
 
     Chunks have `ROWS_OF_A_CHUNK` rows, fewer before a block record, whatever the batches were. Beyond what
-    `StreamWriter` raises: IRL708 for times of 2^31 s and more.
+    `StreamWriter` raises: IRL708 for times of 2^31 s and more, and for velocities that are not finite.
     """
 
     def __init__(self, path: str | os.PathLike[str], header: StreamHeader) -> None:
@@ -75,6 +75,8 @@ class RosbagWriter(StreamWriter):
         if not len(rows.ticks):
             return
         qd = self._rates.of(rows.ticks, rows.q).qd
+        if not np.isfinite(qd).all():
+            raise self.refusal("rates are not finite")
         content = self._form.records(rows.ticks, rows.q, qd, rows.block, rows.tool).tobytes()
         times = rows.ticks * self.header.tick_ns
         offsets = self._form.offsets(len(times))
