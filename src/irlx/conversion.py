@@ -6,8 +6,9 @@ import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
+from irlx.blocks import InputBlock, SignalBlock, WaitBlock
 from irlx.diagnostics import Diagnostic, Place, report
 from irlx.exporters import TARGETS, ProgramWriter, Target, target_of_ending
 from irlx.streams.error import StreamError
@@ -55,22 +56,40 @@ def convert(
     chosen.sort(key=lambda pair: pair[1] is None)
     with ExitStack() as opened:
         writers = [opened.enter_context(_open(*pair, header, incomplete)) for pair in chosen]
-        blocks = _feed(scan, writers)
+        lost = _feed(scan, writers)
     notes = [note for writer in writers if isinstance(writer, ProgramWriter) for note in writer.notes]
-    without = [path for path, to in chosen if to is None and not FORMATS[path.suffix.lower()].carries_blocks]
-    if blocks:
-        notes += [report("IRL719", Place(str(path)), blocks=blocks) for path in without]
+    for path, to in chosen:
+        known = FORMATS.get(path.suffix.lower()) if to is None else None
+        if known is not None and lost.blocks and not known.carries_blocks:
+            notes.append(_left_out(path, known.title, "blocks", lost.blocks))
+        if to is not None and lost.signals:
+            title = to.writer.profile.title
+            notes.append(_left_out(path, title, "outputs, inputs and conditions of waits", lost.signals))
     return tuple(notes)
 
 
-def _feed(scan: Iterator[ScanItem], writers: Sequence[StreamWriter]) -> int:
-    """Give all that is left of a scan to every writer; returns how many block records there were."""
-    blocks = 0
+class _Counts(NamedTuple):
+    """What was in a scan: block records, and those of them that are signals or wait for one."""
+
+    blocks: int
+    signals: int
+
+
+def _feed(scan: Iterator[ScanItem], writers: Sequence[StreamWriter]) -> _Counts:
+    """Give all that is left of a scan to every writer; returns what only some of them can hold."""
+    blocks = signals = 0
     for item in scan:
-        blocks += isinstance(item, BlockRecord)
+        if isinstance(item, BlockRecord):
+            blocks += 1
+            waits = isinstance(item.block, WaitBlock) and bool(item.block.condition)
+            signals += waits or isinstance(item.block, SignalBlock | InputBlock)
         for writer in writers:
             put(item, writer)
-    return blocks
+    return _Counts(blocks, signals)
+
+
+def _left_out(path: Path, title: str, what: str, number: int) -> Diagnostic:
+    return report("IRL719", Place(str(path)), format=title, what=what, number=number)
 
 
 def _open(path: Path, target: Target | None, header: StreamHeader, incomplete: bool) -> StreamWriter:

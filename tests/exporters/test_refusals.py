@@ -227,3 +227,24 @@ def test_full_disk_leaves_nothing(
     with pytest.raises(StreamError, match="no space left"):
         irlx.convert(arm_stream("rrrrrr", tick_ms), tmp_path / f"a{ending}", target)
     assert [path.read_text() for path in tmp_path.iterdir()] == ["before"]
+
+
+PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "exporters.md").read_text(encoding="utf-8")
+
+
+def test_the_reference_has_the_numbers_of_the_profiles() -> None:
+    table = [line.strip("| ").split(" | ") for line in PAGE.splitlines() if line.startswith("| ")]
+    rows = {cells[0]: cells[1:] for cells in table if len(cells) == 5}
+    for place, (name, target) in enumerate(TARGETS.items()):
+        profile = target.writer.profile
+        told = {what: cells[place] for what, cells in rows.items()}
+        assert f"`{target.ending}`, `{name}`" in told["ending, `--to`"]
+        assert told["digits behind the point"] == str(profile.digits)
+        most = profile.most_points
+        assert told["points of a program"] == ("any number" if most is None else f"up to {most}")
+        assert (told["must end at rest"] == "yes") == profile.ends_at_rest
+        tick = profile.tick_ns or profile.shortest_tick_ns
+        assert told["tick"].startswith("any" if tick is None else f"{tick / 1e6:g} ms")
+        longest = {"rapid": 32, "robodk": "no name"}.get(name, profile.names and profile.names.longest)
+        assert told["longest name"] == str(longest)
+        assert str(profile.turning[1]) in told["joints"]

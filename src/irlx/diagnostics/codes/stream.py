@@ -87,8 +87,8 @@ STREAM: tuple[Code, ...] = (
     ),
     info(
         "IRL719",
-        "the format has no blocks: the {blocks} of this stream are not in it",
-        "keep the stream that it was made from: irlx verify compares blocks with rows",
+        "{format}: {what} are left out, {number} in this stream",
+        "keep the stream that it was made from, which has them",
     ),
     error(
         "IRL725",
