@@ -104,6 +104,25 @@ def test_values(target: str, ending: str, tick_ms: float, value: float, tmp_path
 
 
 @pytest.mark.parametrize(("target", "ending", "tick_ms"), BY_TARGET)
+def test_a_writer_by_itself_leaves_nothing_either(
+    target: str, ending: str, tick_ms: float, tmp_path: Path
+) -> None:
+    stream = arm_stream("rrrrrr", tick_ms)
+    parts = (stream.ticks, stream.q, stream.block, stream.tool)
+    for wrong in (stream.q + np.inf, stream.q[:, :5]):
+        writer = TARGETS[target].writer(tmp_path / f"a{ending}", stream.header)
+        assert len(list(tmp_path.iterdir())) == 1
+        with pytest.raises(StreamError, match=r"IRL714|IRL708"):
+            writer.samples(parts[0], wrong, *parts[2:])
+        assert not list(tmp_path.iterdir())
+    writer = TARGETS[target].writer(tmp_path / f"a{ending}", stream.header)
+    writer.samples(*parts)
+    with pytest.raises(StreamError, match="IRL716"):
+        writer.close(complete=False)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(("target", "ending", "tick_ms"), BY_TARGET)
 def test_speed_at_the_end(target: str, ending: str, tick_ms: float, tmp_path: Path) -> None:
     stream = arm_stream("rrrrrr", tick_ms, MOVING)
     if target == "robodk":

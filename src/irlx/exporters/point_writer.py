@@ -51,7 +51,6 @@ class PointWriter(ProgramWriter):
         """
 
     def _put_rows(self, batch: RowBatch) -> None:
-        first = not len(self._kept)
         ticks = np.concatenate((self._kept_ticks, batch.ticks))
         q = np.concatenate((self._kept, batch.q))
         changed = np.ones(len(q), dtype=bool)
@@ -61,20 +60,20 @@ class PointWriter(ProgramWriter):
         starts = np.flatnonzero(changed)
         ends = np.append(starts[1:], len(q)) - 1
         steps = np.empty(len(starts), np.int64)
-        steps[0] = 0 if first else self._kept_step
+        steps[0] = self._kept_step
         steps[1:] = ticks[starts[1:]] - ticks[ends[:-1]]
         points = Points(q[starts], steps, ticks[ends] - ticks[starts])
-        self._put_points(Points(points.q[:-1], points.steps[:-1], points.holds[:-1]), last=False)
+        self._put_points(Points(points.q[:-1], points.steps[:-1], points.holds[:-1]))
         kept = [starts[-1], ends[-1]]
         self._kept, self._kept_ticks, self._kept_step = q[kept], ticks[kept], int(steps[-1])
 
     def _tail(self) -> None:
         hold = int(self._kept_ticks[1] - self._kept_ticks[0])
         points = Points(self._kept[:1], np.array([self._kept_step]), np.array([hold]))
-        self._put_points(points, last=True)
+        self._put_points(points)
 
-    def _put_points(self, points: Points, last: bool) -> None:
-        """Write points; the last one of the program is the last of them where `last` is True."""
+    def _put_points(self, points: Points) -> None:
+        """Write points. The last one of a program is not passed: what ends at rest has a hold there."""
         if not len(points.q):
             return
         first = not self._points
@@ -85,8 +84,6 @@ class PointWriter(ProgramWriter):
             kind: self._end_of_line(*kind, passes=not kind[1], first=False).encode() for kind in set(kinds)
         }
         tails = [ends[kind] for kind in kinds]
-        if last:
-            tails[-1] = self._end_of_line(*kinds[-1], passes=False, first=False).encode()
         if first:
             tails[0] = self._end_of_line(*kinds[0], passes=False, first=True).encode()
         self._put_values(self._fronts(), points.q, tails)
