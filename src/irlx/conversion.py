@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -12,7 +12,7 @@ from irlx.blocks import InputBlock, SignalBlock, WaitBlock
 from irlx.diagnostics import Diagnostic, Place, report
 from irlx.exporters import TARGETS, ProgramWriter, Target, target_of_ending
 from irlx.streams.error import StreamError
-from irlx.streams.formats import FORMATS, put, scan_stream
+from irlx.streams.formats import FORMATS, open_writer, put, scan_stream
 from irlx.streams.joint_stream import BlockRecord, JointStream, StreamHeader
 from irlx.streams.scan import ScanItem, in_file_order, scan_of
 from irlx.streams.writer import StreamWriter
@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from irlx.report.run import Run
 
 PathLike = str | os.PathLike[str]
-Opener = Callable[[StreamHeader], StreamWriter]
-"""Opens the writer of one output."""
 
 
 def convert(
@@ -94,7 +92,7 @@ def _left_out(path: Path, title: str, what: str, number: int) -> Diagnostic:
 
 def _open(path: Path, target: Target | None, header: StreamHeader, incomplete: bool) -> StreamWriter:
     if target is None:
-        return FORMATS[path.suffix.lower()].writer(path, header)
+        return open_writer(path, header)
     return target.writer(path, header, incomplete)
 
 

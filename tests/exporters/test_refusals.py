@@ -50,10 +50,12 @@ def refusal(stream: JointStream, target: str, folder: Path, **more: object) -> t
         ("krl", "rmmmmmmm", "this stream has 1 turning joint and 7 slides"),
         ("krl", "rrrrrrrrrrrrr", "this stream has 13 turning joints"),
         ("robodk", "rrrrrrrrrrrrr", "this stream has 13 turning joints"),
+        ("robodk", "", "this stream has 0 turning joints"),
     ],
 )
 def test_joints(target: str, units: str, found: str, tmp_path: Path) -> None:
-    code, message = refusal(arm_stream(units, 2.0), target, tmp_path)
+    rows = there_and_back(len(units)) if units else np.zeros((3, 0))
+    code, message = refusal(arm_stream(units, 2.0, rows), target, tmp_path)
     assert code == "IRL710"
     assert found in message
 

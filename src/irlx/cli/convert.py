@@ -32,8 +32,8 @@ def add_parser(commands: Any) -> None:
         action="append",
         required=True,
         metavar="OUT",
-        help="file to write, format by its ending: that of a stream, .script (URScript), .src (KRL) or .mod "
-        "(RAPID); may be given several times",
+        help="file to write, format by its ending: .irdata, .npz, .jsonl, .csv, or for controllers "
+        ".script (URScript), .src (KRL), .mod (RAPID); may be given several times",
     )
     parser.add_argument(
         "--to", choices=_TARGETS, help="what to write, whatever the ending says; RoboDK CSV needs it"

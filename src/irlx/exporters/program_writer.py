@@ -145,7 +145,7 @@ class ProgramWriter(TextWriter):
         fits = (
             profile.turning[0] <= axes.turning <= profile.turning[1]
             and slides <= profile.slides[1]
-            and header.joints <= profile.most_joints
+            and 0 < header.joints <= profile.most_joints
         )
         if not fits:
             found = _counted(axes.turning, "turning joint")
