@@ -19,6 +19,7 @@ ORDER = (
     "pacing",
     "cell",
     "streams",
+    "exporters",
     "verifier",
     "report",
     "cli",
@@ -36,6 +37,7 @@ WIRING = {
     "verification",
     "registration",
     "conformance",
+    "conversion",
 }
 """Modules that wire stages together: only the command line, the package itself and they import them."""
 ANYWHERE = {"_version", "promises"}

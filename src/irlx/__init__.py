@@ -15,6 +15,7 @@ from irlx._version import __version__
 if TYPE_CHECKING:
     from irlx.cell.errors import CellError
     from irlx.checking import check
+    from irlx.conversion import convert
     from irlx.diagnostics import Diagnostic, IrlxError
     from irlx.language.format import format_source
     from irlx.program import Program, ProgramError, load
@@ -47,6 +48,7 @@ _HOMES = {
     "Sample": "irlx.streams.sample",
     "StreamError": "irlx.streams.error",
     "check": "irlx.checking",
+    "convert": "irlx.conversion",
     "format_source": "irlx.language.format",
     "load": "irlx.program",
     "record": "irlx.running",
@@ -76,6 +78,7 @@ __all__ = [
     "StreamError",
     "__version__",
     "check",
+    "convert",
     "format_source",
     "load",
     "record",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -73,6 +74,33 @@ def in_order(stream: JointStream) -> Iterator[ScanItem]:
         yield record
     yield from _rows_of(stream, done, len(stream.ticks))
     yield StreamEnd(stream.complete)
+
+
+def in_file_order(scan: Iterator[ScanItem]) -> Iterator[ScanItem]:
+    """The scan with each block record after the row of its tick, wherever the records stood.
+
+    Records that come early are kept until their row is out.
+    """
+    waiting: deque[BlockRecord] = deque()
+    last = -1
+    for item in scan:
+        if isinstance(item, RowBatch) and len(item.ticks):
+            done = 0
+            while waiting and waiting[0].tick <= item.ticks[-1]:
+                upto = int(item.ticks.searchsorted(waiting[0].tick, side="right"))
+                if upto > done:
+                    yield item.part(slice(done, upto))
+                    done = upto
+                yield waiting.popleft()
+            if done < len(item.ticks):
+                yield item.part(slice(done, len(item.ticks)))
+            last = int(item.ticks[-1])
+        elif isinstance(item, BlockRecord) and (waiting or item.tick > last):
+            waiting.append(item)
+        else:
+            if isinstance(item, StreamEnd):
+                yield from waiting
+            yield item
 
 
 def _rows_of(stream: JointStream, begin: int, end: int) -> Iterator[RowBatch]:

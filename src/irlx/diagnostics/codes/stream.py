@@ -1,6 +1,6 @@
 """IRL7xx: joint streams and their verification."""
 
-from irlx.diagnostics.codes.code import Code, error
+from irlx.diagnostics.codes.code import Code, error, info
 
 STREAM: tuple[Code, ...] = (
     error(
@@ -41,6 +41,56 @@ STREAM: tuple[Code, ...] = (
         "run the program again with this irlx; if it fails again, please report it with program and cell",
     ),
     error("IRL720", "{path}: {title} needs {package}: {command}"),
+    error(
+        "IRL710",
+        "{target} moves {wanted}; this stream has {found}",
+        "lock joints in the cell ([robot] locked) that need not move, or choose another target with --to",
+    ),
+    error(
+        "IRL711",
+        "{target} has no slides, and joint '{joint}' is one",
+        "lock the slide in the cell ([robot] locked), or choose another target with --to",
+    ),
+    error(
+        "IRL712",
+        "{target} takes a tick {wanted}; this stream has one of {found} ms",
+        "run the program with --tick {tick}: rows between the rows of a stream are never invented",
+    ),
+    error(
+        "IRL713",
+        "{target} plays one posture a tick, but tick {tick} follows {previous}",
+        "run the program again; its streams have no gaps",
+    ),
+    error(
+        "IRL714",
+        "joint '{joint}' is {value} {unit} at tick {tick}, which {target} cannot hold",
+        "look at what made the stream; no robot stands there",
+    ),
+    error(
+        "IRL715",
+        "the stream ends at tick {tick} while joint '{joint}' still moves at {speed}: {target} ends hard",
+        "run the program again: what irlx keeps of an interrupted run ends at a stop",
+    ),
+    error(
+        "IRL716",
+        "the stream is not complete, so {target} would end somewhere on the way",
+        "run the program to its end, or give --incomplete to have the part that is there",
+    ),
+    error(
+        "IRL717",
+        "a program in {target} holds {wanted} points; this stream has {found}",
+        "cut the program into several, or choose a longer tick where the target takes one",
+    ),
+    info(
+        "IRL718",
+        "the program is called {name}, since '{asked}' is no name in {target}",
+        "name the file so as well where the controller wants both to be the same",
+    ),
+    info(
+        "IRL719",
+        "{format}: {what} are left out, {number} in this stream",
+        "keep the stream that it was made from, which has them",
+    ),
     error(
         "IRL725",
         "this format has no blocks, so that there is nothing to be replayed",
