@@ -53,6 +53,23 @@ def test_verify(name, inside, folder):
     assert "file: IRL701: this is no valid" in done.stdout
 
 
+@pytest.mark.req("STR-04")
+def test_converted_there_and_back(inside, folder):
+    inside("run", "p.irl", *OUTPUTS, "--no-verify")
+    first = content(folder)
+    assert inside("convert", "a.irdata", "-o", "b.parquet", "-o", "b.rosbag").returncode == 0
+    assert inside("convert", "b.rosbag", "-o", "c.parquet", "-o", "c.irdata").returncode == 0
+    assert inside("convert", "b.parquet", "-o", "c.rosbag", "-o", "d.irdata").returncode == 0
+    found = content(folder)
+    for name in ("b.parquet", "c.parquet"):
+        assert found[name] == first["a.parquet"]
+    for name in ("c.irdata", "d.irdata"):
+        assert found[name] == first["a.irdata"]
+    for name in ("stream.mcap", "metadata.yaml"):
+        assert found[f"b.rosbag/{name}"] == found[f"c.rosbag/{name}"] == first[f"a.rosbag/{name}"]
+    assert inside("convert", "a.rosbag", "-o", "a.rosbag").stderr.startswith("error IRL005: ")
+
+
 @pytest.mark.parametrize("joint", ["velocity", "position"])
 def test_what_a_bag_states_is_judged(joint, inside, folder, monkeypatch):
     """A writer that made velocities of its own, with all checksums right, is found out."""

@@ -25,15 +25,15 @@ def add_parser(commands: Any) -> None:
         epilog=_EXAMPLE,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("stream", metavar="IN", help="stream file: .irdata, .npz, .jsonl or .csv")
+    parser.add_argument("stream", metavar="IN", help="stream: .irdata, .npz, .jsonl, .csv, .parquet, .rosbag")
     parser.add_argument(
         "-o",
         "--output",
         action="append",
         required=True,
         metavar="OUT",
-        help="file to write, format by its ending: .irdata, .npz, .jsonl, .csv, or for controllers "
-        ".script (URScript), .src (KRL), .mod (RAPID); may be given several times",
+        help="what to write, format by its ending: .irdata, .npz, .jsonl, .csv, .parquet, .rosbag, or for "
+        "controllers .script (URScript), .src (KRL), .mod (RAPID); may be given several times",
     )
     parser.add_argument(
         "--to", choices=_TARGETS, help="what to write, whatever the ending says; RoboDK CSV needs it"
