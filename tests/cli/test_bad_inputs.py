@@ -214,11 +214,11 @@ def test_options_that_cannot_be(inside, folder, names, options, words):
 
 
 @pytest.mark.req("QA-09")
-def test_the_default_output_is_no_input(inside, folder, names):
+def test_a_program_with_the_ending_of_a_stream_is_taken_for_one(inside, folder, names):
     (folder / "p.irl").rename(folder / "p.irdata")
     done = inside("run", "p.irdata", "--cell", "p.toml")
-    assert done.returncode == 2
-    assert "IRL005" in done.stderr
+    assert done.returncode == 1
+    assert "p.irdata: record 1: error IRL701" in done.stderr
     assert names(folder) == ["p.irdata", "p.toml"]
 
 

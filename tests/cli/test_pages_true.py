@@ -113,6 +113,7 @@ def test_examples_on_the_command_line(tmp_path, monkeypatch, capsys, code):
     for name in ("p.irl", "p.csv", "lonely.irl"):
         (tmp_path / name).write_text(PLAIN_PROGRAM, encoding="utf-8")
     (tmp_path / "p.toml").write_text(PLAIN_CELL, encoding="utf-8")
+    (tmp_path / "inputs.csv").write_text("time,input,value\n", encoding="utf-8")
     before = sorted(tmp_path.iterdir())
     command, *expected = fence(section(code, "Example"), "console").splitlines()
     assert command.startswith("$ irlx ")

@@ -137,5 +137,3 @@ def test_options_that_the_file_answers(
     run("-o", "p.irdata")
     assert main(["run", "--reproduce", "p.irdata", *option]) == 2
     assert f"IRL006: {option[0]}" in capsys.readouterr().err
-    assert main(["run"]) == 2
-    assert "a program file is needed" in capsys.readouterr().err

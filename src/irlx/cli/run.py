@@ -88,7 +88,7 @@ def add_parser(commands: Any) -> None:
     parser.add_argument("--json", action="store_true", help="print the summary as JSON")
     parser.add_argument("--quiet", action="store_true", help="no progress, no summary")
     parser.add_argument("--no-verify", action="store_true", help="do not check the written files")
-    parser.set_defaults(command=command)
+    parser.set_defaults(command=command, refuse=parser.error)
 
 
 def command(options: argparse.Namespace) -> int:
@@ -100,9 +100,7 @@ def command(options: argparse.Namespace) -> int:
 
         return reproduced(options)
     if options.program is None:
-        from irlx.diagnostics import IrlxError, report
-
-        raise IrlxError(report("IRL006", option="P", value="nothing", cause="a program file is needed"))
+        options.refuse("the following arguments are required: P")
     text = ProgramText()
     job, outputs = _prepared(options, text)
     from irlx.pipeline import Execution
