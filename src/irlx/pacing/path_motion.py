@@ -20,6 +20,7 @@ from irlx.pacing.slowdown.planned import MotionTask, PlannedMotion, Refusal, Tic
 from irlx.pacing.slowing import Slowing, slowings
 from irlx.pacing.touching import touching
 from irlx.pacing.walk import Halt, Walk, walk
+from irlx.transform.clearance import Closest
 from irlx.transform.step_bounds import BoundSource, StepLimiter
 from irlx.transform.tick import TickSolver
 
@@ -32,7 +33,7 @@ class PacedPath:
 
     `active` (M, n) flags as in `MotionRows`, `demands` of each row, the posture `term` that they follow,
     `slowings` where it runs slower than programmed (empty for an ordinary walk), `planned` whether it is a
-    planned motion.
+    planned motion; `closest` is that of an ordinary walk tick by tick.
     """
 
     q: Array
@@ -42,6 +43,7 @@ class PacedPath:
     term: PostureTerm
     slowings: tuple[Slowing, ...] = ()
     planned: bool = False
+    closest: tuple[Closest, ...] | None = None
 
 
 @dataclass(frozen=True)
@@ -154,7 +156,8 @@ def _walked(
 
 
 def _as_walked(motion: PathMotion, walked: Walk) -> PacedPath:
-    return PacedPath(walked.q, walked.active, walked.demands, walked.iterations, motion.term)
+    closest = None if motion.resolution.is_coarse else walked.closest
+    return PacedPath(walked.q, walked.active, walked.demands, walked.iterations, motion.term, closest=closest)
 
 
 def _task(motion: PathMotion) -> MotionTask:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.pacing.demand import Demand
-from irlx.transform.clearance import Clearance
+from irlx.transform.clearance import Clearance, Closest
 from irlx.transform.criteria.criterion import Criterion
 from irlx.transform.step_bounds import StepBounds, StepLimiter
 from irlx.transform.tick import TickSolution, TickSolver
@@ -37,7 +37,8 @@ class Halt:
 class Walk:
     """Postures of the ticks done: `q` (k, n), `active` (k, n) as in `MotionRows`, `demands` of each tick.
 
-    `halt` is None where every tick was done.
+    `halt` is None where every tick was done. `closest` is what came nearest in each row, None where nothing
+    is kept clear.
     """
 
     q: Array
@@ -45,6 +46,7 @@ class Walk:
     demands: tuple[Demand, ...]
     iterations: int
     halt: Halt | None
+    closest: tuple[Closest, ...] | None = None
 
 
 def walk(
@@ -70,6 +72,7 @@ def walk(
     rows: list[Array] = []
     flags: list[NDArray[np.int8]] = []
     done: list[Demand] = []
+    closest: list[Closest] = []
     iterations = 0
     halt: Halt | None = None
     for demand in demands:
@@ -95,6 +98,8 @@ def walk(
         speed = step / limiter.dt
         q = reached
         rows.append(q)
+        if clearance is not None:
+            closest.append(clearance.closest(q, elapsed + limiter.dt))
         held = np.count_nonzero(solution.active) > 0
         flags.append(active_flags(solution.active, bounds) if held else unheld)
         done.append(demand)
@@ -104,6 +109,7 @@ def walk(
         tuple(done),
         iterations,
         halt,
+        None if clearance is None else tuple(closest),
     )
 
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import coal
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
@@ -27,8 +28,6 @@ _COARSER = (1e-8, 1e-7, 1e-6, 1e-5)
 """The same where solids overlap and the search gives up at less."""
 
 _ENDLESS = 1e100
-_GUESS = np.array([1.0, 0.0, 0.0])
-_FIRST_VERTICES = np.zeros(2, dtype=np.int32)
 _CROSS = np.zeros((3, 9))
 """A point times this is the matrix, row by row, that turns an angular velocity into the point's velocity."""
 _CROSS[0, [5, 7]] = 1.0, -1.0
@@ -60,8 +59,8 @@ class Distances:
     """Distances between watched pairs of solids.
 
     A pair is looked at again only where the joints have moved far enough since it was looked at last
-    (`Levers`), and once in a posture; what is found does not depend on that. Not safe for use by several
-    threads at once.
+    (`Levers`), and once in a posture; what is found does not depend on that. Postures must not be written to
+    once they have been handed in. Not safe for use by several threads at once.
     """
 
     def __init__(self, kinematics: Kinematics, pairs: Sequence[WatchedPair]) -> None:
@@ -81,15 +80,16 @@ class Distances:
         for first, second in zip(self._first, self._second, strict=True):
             self._model.addCollisionPair(pin.CollisionPair(int(first), int(second)))
         self._geometry = pin.GeometryData(self._model)
-        self._requests = list(self._geometry.distanceRequests)
-        for request in self._requests:
-            request.gjk_tolerance = request.epa_tolerance = _TOLERANCE
+        self._requests = self._geometry.distanceRequests
+        for number in range(len(pairs)):
+            self._requests[number] = _request()
         self._data = kinematics.model.createData()
         self._levers = Levers.of(kinematics, self._bodies, self._radii, self._first, self._second)
         self._last = np.zeros(kinematics.joints)
         self._least = np.full(len(pairs), -np.inf)
         self._slack = -np.inf
         self._longest = self._levers.longest
+        self._far_at: Array | None = None
         self._here: Array | None = None
         sizes = np.array(self._sizes)
         # Half-spaces have no size; what they give is taken for as long as it is a distance at all.
@@ -99,12 +99,13 @@ class Distances:
         self._found = np.empty((len(pairs), 10))
         self._all_near: Near | None = None
         self._columns: Array = self._data.J
-        self._carries = np.zeros((kinematics.model.njoints, kinematics.joints))
+        carries = np.zeros((kinematics.model.njoints, kinematics.joints))
         for joint in range(1, kinematics.model.njoints):
-            self._carries[joint, [above - 1 for above in kinematics.model.supports[joint] if above]] = 1.0
+            carries[joint, [above - 1 for above in kinematics.model.supports[joint] if above]] = 1.0
         bodies = np.array(self._bodies, dtype=np.intp)
-        self._first_body = bodies[self._first] if len(pairs) else self._first
-        self._second_body = bodies[self._second] if len(pairs) else self._second
+        self._first_carried = carries[bodies[self._first], None] if len(pairs) else carries[:0, None]
+        self._second_carried = carries[bodies[self._second], None] if len(pairs) else carries[:0, None]
+        self._others_rest = not np.any(self._second_carried)
         self._time = self._looked_at = 0.0
         self._rates = np.array([self._speeds[k] for k in self._second])
         self._fastest = float(np.max(self._rates, initial=0.0))
@@ -113,7 +114,7 @@ class Distances:
         """Put the obstacles that move where they are at a `time` (s) of the run."""
         if not self._moving or time == self._time:
             return
-        self._time, self._here, self._all_near = time, None, None
+        self._time, self._here, self._all_near, self._far_at = time, None, None, None
         for number, within, trajectory in self._moving:
             self._model.geometryObjects[number].placement = trajectory.pose(time) * within
 
@@ -124,12 +125,18 @@ class Distances:
 
     def far(self, q: Array) -> bool:
         """Whether it is certain without a look that no pair is within its influence at posture q (n,)."""
+        if q is self._far_at:
+            return True
         if self._slack <= 0.0 or self._longest is None:
             return False
         moved = self._longest.dot(np.abs(q - self._last))
         if self._moving:
             moved += self._fastest * abs(self._time - self._looked_at)
-        return bool(moved < self._slack)
+        if not moved < self._slack:
+            return False
+        # The end of a tick, which the next one begins with.
+        self._far_at = q
+        return True
 
     def near(self, q: Array, within: Array | None = None) -> Near:
         """Pairs nearer than `within` (K,) m, by default their influence, at posture q (n,)."""
@@ -158,7 +165,7 @@ class Distances:
             for pair in pairs[~self._known[pairs]].tolist():
                 self._look(pair)
         found = self._found[pairs]
-        return Near(pairs, found[:, 0], found[:, 1:4], found[:, 4:7], found[:, 7:])
+        return Near(pairs, found[:, 0], -found[:, 1:4], found[:, 4:7], found[:, 7:])
 
     def _look(self, pair: int) -> None:
         found = self._found[pair]
@@ -170,15 +177,11 @@ class Distances:
         self._known[pair] = True
 
     def _search(self, pair: int, found: Array) -> None:
-        # Pinocchio begins where the last search ended: bits would depend on what was asked before.
-        request = self._requests[pair]
-        request.cached_gjk_guess, request.cached_support_func_guess = _GUESS, _FIRST_VERTICES
+        """Distance, unit vector from the link to the other one, nearest points, (10,)."""
         result = pin.computeDistance(self._model, self._geometry, pair)
         found[0] = result.min_distance
-        found[1:4] = result.normal
-        np.negative(found[1:4], out=found[1:4])
-        found[4:7] = result.getNearestPoint1()
-        found[7:] = result.getNearestPoint2()
+        parts = result.normal, result.getNearestPoint1(), result.getNearestPoint2()
+        np.concatenate(parts, out=found[1:])
 
     def _search_coarsely(self, pair: int, found: Array) -> None:
         """How deep an overlap is, where rounding ends the search at the usual tolerance without a result."""
@@ -204,17 +207,16 @@ class Distances:
         else:
             away, size = other.rotation[:, 2], 0.0
         found[0] = min(float(way.dot(away)) - size - self._sizes[first], 0.0)
-        found[1:4], found[4:7], found[7:] = away, link.translation, other.translation
+        found[1:4], found[4:7], found[7:] = -away, link.translation, other.translation
 
     def jacobians(self, q: Array, near: Near) -> Array:
         """d(point on link - point on other)/dq (P, 3, n), both points fixed on their bodies, at posture q."""
         if not len(near.pairs):
             return np.zeros((0, 3, q.size))
         self._place(q)
-        found = self._point_jacobians(self._first_body[near.pairs], near.on_link)
-        second = self._second_body[near.pairs]
-        if np.count_nonzero(second):
-            found -= self._point_jacobians(second, near.on_other)
+        found = self._point_jacobians(self._first_carried[near.pairs], near.on_link)
+        if not self._others_rest:
+            found -= self._point_jacobians(self._second_carried[near.pairs], near.on_other)
         return found
 
     def rates(self, q: Array, near: Near) -> Array:
@@ -223,12 +225,12 @@ class Distances:
             return np.zeros((0, q.size))
         return np.asarray(np.matmul(near.away[:, None, :], self.jacobians(q, near))[:, 0, :])
 
-    def _point_jacobians(self, bodies: Numbers, points: Array) -> Array:
-        """Jacobians (P, 3, n) of points (P, 3) in the world, each fixed on one of the bodies (P,)."""
+    def _point_jacobians(self, carried: Array, points: Array) -> Array:
+        """Jacobians (P, 3, n) of points (P, 3) in the world, each on a body; `carried` (P, 1, n) by which."""
         turned = points.dot(_CROSS).reshape(-1, 3)
         found = turned.dot(self._columns[3:]).reshape(-1, 3, self.kinematics.joints)
         found += self._columns[:3]
-        found *= self._carries[bodies][:, None, :]
+        found *= carried
         return np.asarray(found)
 
     def _place(self, q: Array) -> None:
@@ -274,6 +276,14 @@ class Distances:
             self._radii.append(float(np.linalg.norm(pose.translation)) + size)
             self._sizes.append(size)
         return number
+
+
+def _request() -> coal.DistanceRequest:
+    """How a pair is searched. No search begins where the last one ended, as Pinocchio's own requests ask for:
+    bits would depend on what was asked before."""
+    request = coal.DistanceRequest()
+    request.gjk_tolerance = request.epa_tolerance = _TOLERANCE
+    return request
 
 
 def _same(first: Array, second: Array) -> bool:

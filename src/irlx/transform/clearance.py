@@ -30,6 +30,9 @@ RESERVE = 2e-6
 ALLOWANCE = 1e-6
 """By how much (m) a solved tick may pass its floors."""
 
+Closest = tuple[int, float] | None
+"""Number of a pair, and its distance (m)."""
+
 _BENDS = 1e-4
 _NEAR_MARGIN = 0.01
 _MOST_LOOKS = 8
@@ -56,6 +59,26 @@ class TooNear:
     floor: float
 
 
+@dataclass(frozen=True)
+class Least:
+    """Distances of all pairs (K,), m: what is `kept` between them, and what those nearer than that keep, the
+    `lowest`. `reach` is that of `within`."""
+
+    kept: Array
+    lowest: Array
+    reach: Array | None
+
+    @classmethod
+    def of(cls, distances: Distances, reserve: float, at_start: Near | None) -> Least:
+        """Margins and a reserve (m); what is nearer `at_start` of a motion may stay as near as it is."""
+        kept = distances.margin + reserve
+        lowest = kept.copy()
+        if at_start is not None:
+            inside = at_start.pairs
+            lowest[inside] = np.minimum(kept[inside], at_start.distance)
+        return cls(kept, lowest, within(distances, lowest))
+
+
 class Clearance:
     """Pairs to be kept clear of each other in a motion that begins at the time `begin` (s) of the run."""
 
@@ -63,6 +86,7 @@ class Clearance:
         self.distances = distances
         self.begin = begin
         self._at_start: Near | None = None
+        self._least: dict[float, Least] = {}
         self._start: Array = np.zeros(0)
         self._start_distance: Array = np.zeros(0)
 
@@ -84,7 +108,8 @@ class Clearance:
         None where everything is far; where a step from there comes near something, `nears` tells.
         """
         if self.after(elapsed).far(q):
-            self._at_start = None if elapsed == 0.0 else self._at_start
+            if elapsed == 0.0:
+                self._begun(None)
             return None
         return self._tick(q, dt, elapsed, reserve, paced)
 
@@ -95,13 +120,16 @@ class Clearance:
     def _tick(self, q: Array, dt: float, elapsed: float, reserve: float, paced: bool) -> TickClearance:
         distances = self.after(elapsed)
         if elapsed == 0.0:
-            self._at_start = distances.near(q, distances.margin + _NEAR_MARGIN)
-        least = distances.margin + reserve
-        lowest = least.copy()
-        if self._at_start is not None:
-            inside = self._at_start.pairs
-            lowest[inside] = np.minimum(least[inside], self._at_start.distance)
-        return TickClearance(distances, q, dt, (least, lowest), self.begin + elapsed, paced)
+            self._begun(distances.near(q, distances.margin + _NEAR_MARGIN))
+        least = self._least.get(reserve)
+        if least is None:
+            least = self._least[reserve] = Least.of(distances, reserve, self._at_start)
+        return TickClearance(distances, q, dt, least, self.begin + elapsed, paced)
+
+    def _begun(self, near: Near | None) -> None:
+        """Note what a motion has near its margins as it begins."""
+        self._at_start = near
+        self._least.clear()
 
     def nears(self, q: Array, elapsed: float) -> bool:
         """Whether a tick that began without floors must not end at q (n,) unseen."""
@@ -121,6 +149,20 @@ class Clearance:
             return None
         k = int(np.argmin(room))
         return TooNear(int(near.pairs[k]), float(near.distance[k]), float(least[k]))
+
+    def closest(self, q: Array, elapsed: float) -> Closest:
+        """The pair with the least room above its margin at q (n,), `elapsed` s after the begin of the motion.
+
+        None where all are farther away than they count.
+        """
+        distances = self.after(elapsed)
+        if distances.far(q):
+            return None
+        near = distances.near(q)
+        if not len(near.pairs):
+            return None
+        k = int((near.distance - distances.margin[near.pairs]).argmin())
+        return int(near.pairs[k]), float(near.distance[k])
 
     def inside_margin(self, q: Array) -> TooNear | None:
         """The pair of posture q (n,) that is deepest inside its margin; None where none is."""
@@ -183,35 +225,34 @@ class TickClearance:
         distances: Distances,
         q: Array,
         dt: float,
-        least: tuple[Array, Array],
+        least: Least,
         time: float,
         paced: bool = True,
     ) -> None:
-        """A tick of dt s from posture q (n,) at a `time` (s) of the run.
-
-        `least` are the distances (K,) of all pairs that are kept, and those that pairs inside of these keep.
-        """
+        """A tick of dt s from posture q (n,) at a `time` (s) of the run."""
         self._distances = distances
         self._end = time + dt
         distances.at_time(time)
         self._q = q
-        self._lowest = least[1]
-        self._within = within(distances, self._lowest)
+        self._least = least
         self.near = distances.near(q)
         pairs, found = self.near.pairs, self.near.distance
         share = min(dt / APPROACH_TIME, 1.0) if paced else 1.0
-        lost = found - share * (found - least[0][pairs])
-        self.floors = np.where(found > least[0][pairs], lost, least[1][pairs])
-        self._looked_from = np.zeros_like(q)
+        kept = least.kept[pairs]
+        left = found - kept
+        self.floors = np.where(left > 0.0, found - share * left, least.lowest[pairs])
+        self._looked_from: Array | None = None
         self._gradient: Array | None = None
         self._looks = 0
 
     def rows(self, whole: Array) -> SideRows:
         """Rows of the Newton step at the iterate `whole` (n,), the step since the start of the tick."""
-        moved = float(np.max(np.abs(whole - self._looked_from), initial=0.0))
-        if self._gradient is None or (moved > _BENDS and self._looks < _MOST_LOOKS):
-            self._look(whole)
-        assert self._gradient is not None
+        if self._gradient is None or self._looked_from is None:
+            self._gradient, self._looked_from = self._look(whole)
+        elif self._looks < _MOST_LOOKS:
+            moved = float(np.max(np.abs(whole - self._looked_from), initial=0.0))
+            if moved > _BENDS:
+                self._gradient, self._looked_from = self._look(whole)
         since = whole - self._looked_from
         return SideRows(self._gradient, self.floors - self.near.distance - self._gradient @ since)
 
@@ -222,10 +263,10 @@ class TickClearance:
         """
         distances = self._distances
         distances.at_time(self._end)
-        there = distances.near(self._q + whole, self._within)
+        there = distances.near(self._q + whole, self._least.reach)
         if not len(there.pairs):
             return True
-        floor = self._lowest.copy()
+        floor = self._least.lowest.copy()
         floor[self.near.pairs] = self.floors
         short = there.distance < floor[there.pairs] - ALLOWANCE
         if not np.count_nonzero(short):
@@ -241,11 +282,11 @@ class TickClearance:
         """Whether looking again has not helped."""
         return self._looks >= _MOST_LOOKS
 
-    def _look(self, whole: Array) -> None:
+    def _look(self, whole: Array) -> tuple[Array, Array]:
+        """Distances at an iterate; how they grow with the joints (P, n), and the iterate."""
         distances = self._distances
         distances.at_time(self._end)
         q = self._q + whole
         self.near = distances.of(q, self.near.pairs)
-        self._gradient = distances.rates(q, self.near)
-        self._looked_from = whole.copy()
         self._looks += 1
+        return distances.rates(q, self.near), whole.copy()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
+from scipy.linalg.lapack import dposv
 
 Array = NDArray[np.float64]
 
@@ -17,6 +18,14 @@ def times(hessian: Array, d: Array) -> Array:
 def solved(hessian: Array, g: Array) -> Array:
     """H^-1 g, shape (n,)."""
     return g / hessian if hessian.ndim == 1 else np.asarray(np.linalg.solve(hessian, g))
+
+
+def inverse(hessian: Array) -> Array:
+    """H^-1, a diagonal (n,) or whole (n, n)."""
+    if hessian.ndim == 1:
+        return 1.0 / hessian
+    _, found, failed = dposv(hessian, np.eye(len(hessian)))
+    return np.asarray(np.linalg.inv(hessian) if failed else found)
 
 
 def rows_over(rows: Array, hessian: Array) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg.lapack import dgeqrf, dormqr
 
 from irlx.scene.distances import Distances
 from irlx.transform.criteria.term import Term
@@ -52,6 +53,7 @@ class KeepingClear(Term):
         self._distances = distances
         self._kinematics = distances.kinematics
         self._free = free
+        self._all_free = bool(np.all(free))
         self._pushing = np.array([pair.obstacle is not None for pair in distances.pairs], dtype=np.bool_)
         self._q: Array | None = None
         self._found: tuple[Array, Array, float] | None = None
@@ -94,30 +96,39 @@ class KeepingClear(Term):
         weight = rise * (away.min() / away) ** _FALL
         weight = OBSTACLE_WEIGHT * _SQUARE_MILLIMETRES * weight / max(float(weight.sum()), 1.0)
         points = distances.jacobians(q, near)
+        opens = np.matmul(near.away[:, None, :], points)[:, 0, :]
         # What leads out of the influence must not be thrown out of it, to fall back a tick later.
         alpha = np.minimum(_STEP / away, _SETTLING * np.maximum(influence - away, 0.0))
-        pulls = (weight * self._pace(q, near.away, points, alpha))[:, None] * near.away
-        linear = -pulls.reshape(-1).dot(points.reshape(-1, q.size))
+        linear = -(weight * self._pace(q, opens, points, alpha)).dot(opens)
         rows = (np.sqrt(weight)[:, None, None] * points).reshape(-1, q.size)
         return linear, rows.T.dot(rows), float(rise.max())
 
-    def _pace(self, q: Array, away: Array, points: Array, alpha: Array) -> Array:
+    def _pace(self, q: Array, opens: Array, points: Array, alpha: Array) -> Array:
         """alpha (P,), less where the joints would have to move fast for it with the tool held at posture q.
 
         In the null space N of the tool's Jacobian the rate g = N' J_k' v opens the gap fastest; along g the
         sum is least for a step of alpha |g|^3 / |J_k N g|^2, which is kept below `_FASTEST` in 50 ms. A point
-        next to the tool, which these joints hardly move, would else be worth any motion of them.
+        next to the tool, which these joints hardly move, would else be worth any motion of them. `opens`
+        (P, n) is J_k' v of each pair.
         """
-        _, jacobian = self._kinematics.here(q)
-        free, m = self._free, jacobian.shape[0]
-        held = jacobian[:, free].T
-        if held.shape[0] <= m:
+        jacobian = self._kinematics.rows_here(q)
+        if not self._all_free:
+            jacobian, points, opens = jacobian[:, self._free], points[:, :, self._free], opens[:, self._free]
+        if jacobian.shape[1] <= jacobian.shape[0]:
             return np.zeros_like(alpha)
-        basis = np.linalg.qr(held, mode="complete")[0][:, m:]
-        moves = points[:, :, free] @ basis
-        gain = np.matmul(away[:, None, :], moves)[:, 0, :]
-        moved = np.matmul(moves, gain[:, :, None])[:, :, 0]
+        basis = _null_space(jacobian)
+        gain = opens.dot(basis)
+        moved = np.matmul(points.dot(basis), gain[:, :, None])[:, :, 0]
         length = np.sqrt((gain * gain).sum(axis=1))
         asked = alpha * length**3
         most = _FASTEST * _PER_TIME * (moved * moved).sum(axis=1)
         return np.where(asked > most, alpha * most / np.maximum(asked, 1e-300), alpha)
+
+
+def _null_space(jacobian: Array) -> Array:
+    """The columns (n, n - m) of Q in J' = Q R that are orthogonal to all rows of J (m, n)."""
+    m, n = jacobian.shape
+    factors, scales, _, _ = dgeqrf(jacobian.T)
+    last = np.zeros((n, n - m), order="F")
+    last[m:].flat[:: n - m + 1] = 1.0
+    return np.asarray(dormqr("L", "N", factors, scales, last, n)[0])
