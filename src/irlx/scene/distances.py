@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import coal
 import numpy as np
@@ -35,8 +34,7 @@ _CROSS[1, [2, 6]] = -1.0, 1.0
 _CROSS[2, [1, 3]] = 1.0, -1.0
 
 
-@dataclass(frozen=True)
-class Near:
+class Near(NamedTuple):
     """Pairs that are near in a posture, P of them, by their numbers `pairs` (P,).
 
     `distance` (P,) m, negative where they overlap; `away` (P, 3) unit vectors in the world along which the
@@ -152,44 +150,58 @@ class Distances:
         found = self.of(q, asked)
         least[asked] = found.distance
         self._least, self._last = least, q.copy()
-        self._slack = float((least - self.influence).min(initial=np.inf))
         close = found.distance < reach[asked]
         found = found if np.count_nonzero(close) == len(asked) else found.chosen(close)
+        some_near = everything and len(found.pairs) > 0
+        self._slack = -np.inf if some_near else float((least - self.influence).min(initial=np.inf))
         self._all_near = found if everything else None
         return found
 
     def of(self, q: Array, pairs: Numbers) -> Near:
         """These pairs at posture q (n,), however far."""
-        if len(pairs):
-            self._place(q)
-            for pair in pairs[~self._known[pairs]].tolist():
-                self._look(pair)
+        if not len(pairs):
+            nothing = np.zeros((0, 3))
+            return Near(pairs, np.zeros(0), nothing, nothing, nothing)
+        self._place(q)
+        known = self._known[pairs]
+        unknown = len(pairs) - np.count_nonzero(known)
+        if unknown:
+            self._look(pairs if unknown == len(pairs) else pairs[~known])
         found = self._found[pairs]
         return Near(pairs, found[:, 0], -found[:, 1:4], found[:, 4:7], found[:, 7:])
 
-    def _look(self, pair: int) -> None:
-        found = self._found[pair]
-        self._search(pair, found)
-        if not found[0] >= self._deepest[pair]:
-            self._search_coarsely(pair, found)
-        if not found[0] >= self._deepest[pair]:
-            self._mend(pair, found)
-        self._known[pair] = True
+    def _look(self, pairs: Numbers) -> None:
+        """Distance, unit vector from the link to the other one and nearest points of pairs."""
+        found = self._search(pairs.tolist())
+        self._found[pairs] = found
+        good = found[:, 0] >= self._deepest[pairs]
+        if np.count_nonzero(good) < len(pairs):
+            for pair in pairs[~good].tolist():
+                self._search_coarsely(pair, self._found[pair])
+        self._known[pairs] = True
 
-    def _search(self, pair: int, found: Array) -> None:
-        """Distance, unit vector from the link to the other one, nearest points, (10,)."""
-        result = pin.computeDistance(self._model, self._geometry, pair)
-        found[0] = result.min_distance
-        parts = result.normal, result.getNearestPoint1(), result.getNearestPoint2()
-        np.concatenate(parts, out=found[1:])
+    def _search(self, pairs: list[int]) -> Array:
+        model, geometry = self._model, self._geometry
+        parts: list[Any] = []
+        for pair in pairs:
+            result = pin.computeDistance(model, geometry, pair)
+            parts += (
+                (result.min_distance,),
+                result.normal,
+                result.getNearestPoint1(),
+                result.getNearestPoint2(),
+            )
+        return np.concatenate(parts).reshape(-1, 10)
 
     def _search_coarsely(self, pair: int, found: Array) -> None:
         """How deep an overlap is, where rounding ends the search at the usual tolerance without a result."""
         request = self._requests[pair]
         for request.epa_tolerance in _COARSER:
-            self._search(pair, found)
+            found[:] = self._search([pair])[0]
             if found[0] >= self._deepest[pair]:
                 break
+        else:
+            self._mend(pair, found)
         request.epa_tolerance = _TOLERANCE
 
     def _mend(self, pair: int, found: Array) -> None:
@@ -287,4 +299,4 @@ def _request() -> coal.DistanceRequest:
 
 
 def _same(first: Array, second: Array) -> bool:
-    return first is second or np.count_nonzero(first == second) == second.size
+    return first is second or first.tobytes() == second.tobytes()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
@@ -24,8 +26,13 @@ def inverse(hessian: Array) -> Array:
     """H^-1, a diagonal (n,) or whole (n, n)."""
     if hessian.ndim == 1:
         return 1.0 / hessian
-    _, found, failed = dposv(hessian, np.eye(len(hessian)))
+    _, found, failed = dposv(hessian, _identity(len(hessian)))
     return np.asarray(np.linalg.inv(hessian) if failed else found)
+
+
+@cache
+def _identity(size: int) -> Array:
+    return np.eye(size)
 
 
 def rows_over(rows: Array, hessian: Array) -> Array:

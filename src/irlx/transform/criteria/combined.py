@@ -80,14 +80,14 @@ class _Begun(Criterion):
     def __init__(self, whole: Combined, base: Criterion, share: float, linear: Array, added: Array) -> None:
         self._whole = whole
         self._base = base
-        self._share = share
         own = base.hessian()
         hessian = _sum(share * own, added)
         size = float((hessian if hessian.ndim == 1 else hessian.diagonal()).sum())
-        self._scale = float(own.sum()) / size
-        self._linear = linear
-        self._added = added
-        self._hessian = self._scale * hessian
+        scale = float(own.sum()) / size
+        self._share = scale * share
+        self._linear = scale * linear
+        self._added = scale * added
+        self._hessian = scale * hessian
         self._inverse: Array | None = None
 
     @property
@@ -98,12 +98,11 @@ class _Begun(Criterion):
     def value(self, q: Array, step: Array) -> float:
         """phi at a step, scaled."""
         added = float(self._linear @ step + 0.5 * step @ times(self._added, step))
-        return self._scale * (self._share * self._base.value(q, step) + added)
+        return self._share * self._base.value(q, step) + added
 
     def gradient(self, q: Array, step: Array) -> Array:
         """Its derivative by the step."""
-        whole = self._share * self._base.gradient(q, step) + self._linear + times(self._added, step)
-        return self._scale * whole
+        return self._share * self._base.gradient(q, step) + self._linear + times(self._added, step)
 
     def hessian(self) -> Array:
         """Its second derivative."""

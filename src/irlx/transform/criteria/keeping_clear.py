@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from functools import cache
+from math import sqrt
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgeqrf, dormqr
 
-from irlx.scene.distances import Distances
+from irlx.scene.distances import Distances, Near
 from irlx.transform.criteria.term import Term
 
 Array = NDArray[np.float64]
@@ -55,6 +58,9 @@ class KeepingClear(Term):
         self._free = free
         self._all_free = bool(np.all(free))
         self._pushing = np.array([pair.obstacle is not None for pair in distances.pairs], dtype=np.bool_)
+        self._all_push = bool(np.all(self._pushing))
+        self._influence = distances.influence.tolist()
+        self._ramp = np.maximum(_RAMP * (distances.influence - distances.margin), 1e-12).tolist()
         self._q: Array | None = None
         self._found: tuple[Array, Array, float] | None = None
 
@@ -84,51 +90,65 @@ class KeepingClear(Term):
     def _terms(self, q: Array) -> tuple[Array, Array, float]:
         distances = self._distances
         near = distances.near(q)
-        pushing = self._pushing[near.pairs]
-        near = near if np.count_nonzero(pushing) == len(pushing) else near.chosen(pushing)
+        if not self._all_push:
+            near = near.chosen(self._pushing[near.pairs])
         if not len(near.pairs):
             return np.zeros(q.size), np.zeros((q.size, q.size)), 0.0
-        away = np.maximum(near.distance, _NEAREST)
-        influence = distances.influence[near.pairs]
-        inside = (influence - away) / (_RAMP * (influence - distances.margin[near.pairs]))
-        inside = np.minimum(np.maximum(inside, 0.0), 1.0)
-        rise = inside * inside * (3.0 - 2.0 * inside)
-        weight = rise * (away.min() / away) ** _FALL
-        weight = OBSTACLE_WEIGHT * _SQUARE_MILLIMETRES * weight / max(float(weight.sum()), 1.0)
+        weights, alpha, highest = self._weights(near)
         points = distances.jacobians(q, near)
         opens = np.matmul(near.away[:, None, :], points)[:, 0, :]
-        # What leads out of the influence must not be thrown out of it, to fall back a tick later.
-        alpha = np.minimum(_STEP / away, _SETTLING * np.maximum(influence - away, 0.0))
-        linear = -(weight * self._pace(q, opens, points, alpha)).dot(opens)
-        rows = (np.sqrt(weight)[:, None, None] * points).reshape(-1, q.size)
-        return linear, rows.T.dot(rows), float(rise.max())
+        pushed = [w * pace for w, pace in zip(weights, self._pace(q, opens, points, alpha), strict=True)]
+        rows = (np.sqrt(weights)[:, None, None] * points).reshape(-1, q.size)
+        return -np.array(pushed).dot(opens), rows.T.dot(rows), highest
 
-    def _pace(self, q: Array, opens: Array, points: Array, alpha: Array) -> Array:
-        """alpha (P,), less where the joints would have to move fast for it with the tool held at posture q.
+    def _weights(self, near: Near) -> tuple[list[float], list[float], float]:
+        """w a_obs, 1/m2, and alpha, m, of each pair, and the largest rise. They are few: no arrays."""
+        away = [max(distance, _NEAREST) for distance in near.distance.tolist()]
+        nearest = min(away)
+        rises, weights, alpha = [], [], []
+        for pair, gap in zip(near.pairs.tolist(), away, strict=True):
+            depth = max(self._influence[pair] - gap, 0.0)
+            inside = min(depth / self._ramp[pair], 1.0)
+            rises.append(inside * inside * (3.0 - 2.0 * inside))
+            weights.append(rises[-1] * (nearest / gap) ** _FALL)
+            # What leads out of the influence must not be thrown out of it, to fall back a tick later.
+            alpha.append(min(_STEP / gap, _SETTLING * depth))
+        scale = OBSTACLE_WEIGHT * _SQUARE_MILLIMETRES / max(sum(weights), 1.0)
+        return [scale * weight for weight in weights], alpha, max(rises)
+
+    def _pace(self, q: Array, opens: Array, points: Array, alpha: list[float]) -> list[float]:
+        """alpha, less where the joints would have to move fast for it with the tool held at posture q.
 
         In the null space N of the tool's Jacobian the rate g = N' J_k' v opens the gap fastest; along g the
         sum is least for a step of alpha |g|^3 / |J_k N g|^2, which is kept below `_FASTEST` in 50 ms. A point
         next to the tool, which these joints hardly move, would else be worth any motion of them. `opens`
-        (P, n) is J_k' v of each pair.
+        (P, n) is J_k' v of each of the pairs, `points` (P, 3, n) their J_k.
         """
         jacobian = self._kinematics.rows_here(q)
         if not self._all_free:
             jacobian, points, opens = jacobian[:, self._free], points[:, :, self._free], opens[:, self._free]
         if jacobian.shape[1] <= jacobian.shape[0]:
-            return np.zeros_like(alpha)
+            return [0.0] * len(alpha)
         basis = _null_space(jacobian)
         gain = opens.dot(basis)
-        moved = np.matmul(points.dot(basis), gain[:, :, None])[:, :, 0]
-        length = np.sqrt((gain * gain).sum(axis=1))
-        asked = alpha * length**3
-        most = _FASTEST * _PER_TIME * (moved * moved).sum(axis=1)
-        return np.where(asked > most, alpha * most / np.maximum(asked, 1e-300), alpha)
+        moves = points.reshape(-1, len(basis)).dot(basis).reshape(len(gain), 3, -1)
+        moved = np.matmul(moves, gain[:, :, None])[:, :, 0]
+        squares = np.einsum("ij,ij->i", gain, gain).tolist(), np.einsum("ij,ij->i", moved, moved).tolist()
+        paces = []
+        for most, gained, square in zip(alpha, *squares, strict=True):
+            asked, fastest = most * gained * sqrt(gained), _FASTEST * _PER_TIME * square
+            paces.append(most * fastest / max(asked, 1e-300) if asked > fastest else most)
+        return paces
 
 
 def _null_space(jacobian: Array) -> Array:
     """The columns (n, n - m) of Q in J' = Q R that are orthogonal to all rows of J (m, n)."""
     m, n = jacobian.shape
     factors, scales, _, _ = dgeqrf(jacobian.T)
-    last = np.zeros((n, n - m), order="F")
-    last[m:].flat[:: n - m + 1] = 1.0
-    return np.asarray(dormqr("L", "N", factors, scales, last, n)[0])
+    return np.asarray(dormqr("L", "N", factors, scales, _last_columns(m, n), n)[0])
+
+
+@cache
+def _last_columns(m: int, n: int) -> Array:
+    """Those of the identity (n, n) behind the first m."""
+    return np.asfortranarray(np.eye(n)[:, m:])
