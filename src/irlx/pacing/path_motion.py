@@ -18,6 +18,7 @@ from irlx.pacing.row_check import BrokenBound, broken_bound
 from irlx.pacing.slowdown.model import Model
 from irlx.pacing.slowdown.planned import MotionTask, PlannedMotion, Refusal, Ticking, plan_motion
 from irlx.pacing.slowing import Slowing, slowings
+from irlx.pacing.swinging import swings
 from irlx.pacing.touching import touching
 from irlx.pacing.walk import Halt, Walk, walk
 from irlx.transform.clearance import Closest
@@ -80,8 +81,24 @@ class PathMotion:
 def pace_path(motion: PathMotion, model: Model, solver: TickSolver) -> PacedPath | Failure:
     """Rows of a motion: at the programmed speed where every tick can, else slowed where it must be.
 
-    Where neither is possible with its posture term, with the one that this names instead.
+    Where neither is possible with its posture term, with the one that this names instead, and so where it
+    makes the joints swing.
     """
+    found = _paced_or_otherwise(motion, model, solver)
+    calmer = motion.term.calmer
+    if calmer is None or isinstance(found, Failure) or not _swings(motion, found, model):
+        return found
+    second = pace_path(replace(motion, term=calmer), model, solver)
+    return found if isinstance(second, Failure) or _swings(motion, second, model) else second
+
+
+def _swings(motion: PathMotion, found: PacedPath, model: Model) -> bool:
+    if motion.resolution.is_coarse:
+        return False
+    return swings(np.vstack([motion.start, found.q]), model.limits, motion.dt)
+
+
+def _paced_or_otherwise(motion: PathMotion, model: Model, solver: TickSolver) -> PacedPath | Failure:
     found = _paced(motion, model, solver)
     if isinstance(found, Failure) and motion.term.otherwise is not None:
         second = _paced(replace(motion, term=motion.term.otherwise), model, solver)

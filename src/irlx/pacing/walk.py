@@ -81,12 +81,7 @@ def walk(
         elapsed = len(rows) * limiter.dt
         keeping = clearance.tick(q, limiter.dt, elapsed) if clearance is not None else None
         problem = TickProblem(target, q, bounds, criterion_of(demand), free, keeping)
-        seed = seeds.next()
-        solution = solver.solve(problem, seed, thorough)
-        unseen = clearance if keeping is None and solution.solved else None
-        if unseen is not None and unseen.nears(solution.q, elapsed + limiter.dt):
-            problem = problem._replace(clearance=unseen.watched_tick(q, limiter.dt, elapsed))
-            solution = solver.solve(problem, seed, thorough)
+        solution = _solved(solver, problem, seeds.next(), thorough, clearance, (elapsed, limiter.dt))
         iterations += solution.iterations
         if not solution.solved:
             halt = Halt(demand, bounds, solution)
@@ -111,6 +106,26 @@ def walk(
         halt,
         None if clearance is None else tuple(closest),
     )
+
+
+def _solved(
+    solver: TickSolver,
+    problem: TickProblem,
+    seed: Array,
+    thorough: bool,
+    clearance: Clearance | None,
+    span: tuple[float, float],
+) -> TickSolution:
+    """The solution of a tick, found again with floors where all was far and it ends near something.
+
+    `span`: begin and duration (s) of the tick.
+    """
+    solution = solver.solve(problem, seed, thorough)
+    unseen = clearance if problem.clearance is None and solution.solved else None
+    if unseen is None or not unseen.nears(solution.q, sum(span)):
+        return solution
+    watched = problem._replace(clearance=unseen.watched_tick(problem.q, span[1], span[0]))
+    return solver.solve(watched, seed, thorough)
 
 
 class _Seeds:
