@@ -35,6 +35,9 @@ pytestmark = [pytest.mark.req("TRF-13"), pytest.mark.req("TRF-14")]
 QUICK = (0, 1, 4, 7, 8, 10, 13, 15, 17, 18, 19, 32, 33, 34, 37, 40, 152, 153, 155, 156, 157, 166, 179, 181)
 """Seeds of scenes of all kinds that take little time."""
 
+SWINGING = (1197, 1409)
+"""Seeds of scenes in which pushes make joints swing: beside a cube; a link that goes with the tool."""
+
 LONG = 500
 MOST_TURNS, MOST_FLICKER = 12, 4
 REFUSALS = {
@@ -260,6 +263,14 @@ def assert_telling(found: list[Judged]) -> None:
 
 def test_drawn_scenes():
     assert_telling(in_turn(QUICK))
+
+
+@pytest.mark.parametrize("seed", SWINGING)
+def test_a_calmer_criterion_ends_swinging(seed, monkeypatch):
+    assert one_scene(seed).ended == "done"
+    monkeypatch.setattr("irlx.pacing.path_motion.swings", lambda *_: False)
+    with pytest.raises(AssertionError, match="accelerations turn round"):
+        one_scene(seed)
 
 
 @pytest.mark.slow
