@@ -127,6 +127,7 @@ def run(scene: DrawnScene, judged: Judged, where: str) -> None:
         if refused:
             codes = {found.code for found in refused if found.is_error}
             assert codes <= REFUSALS, f"{where}: {', '.join(map(str, refused))}"
+            assert all(map(tells_the_truth, refused)), f"{where}: {', '.join(map(str, refused))}"
             assert np.array_equal(pacer.q, before), f"{where}: a refusal moved the robot"
             assert pacer.tick == tick, f"{where}: a refusal took time"
             judged.ended = min(codes)
@@ -141,6 +142,14 @@ def run(scene: DrawnScene, judged: Judged, where: str) -> None:
             judge(scene, block, rows, np.vstack([before, rows.q]), obstacles, judged, where)
             fixed = [joint - 1 for joint in frozen]
             assert np.all(rows.q[:, fixed] == before[fixed]), f"{where}: a frozen joint moved"
+
+
+def tells_the_truth(found: Diagnostic) -> bool:
+    """Whether what is told to come too near is nearer than what is told to be kept."""
+    if found.code not in {"IRL560", "IRL561"}:
+        return True
+    distance, floor = (float(str(found.data[word]).split()[0]) for word in ("distance", "floor"))
+    return distance < floor
 
 
 def judge(scene, block, rows: MotionRows, q: np.ndarray, obstacles: list[Obstacle], judged: Judged, where):

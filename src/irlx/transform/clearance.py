@@ -185,12 +185,15 @@ class Clearance:
                 return row, found
         return None
 
-    def nearest(self, q: Array, start: Array) -> TooNear | None:
-        """The pair with the least room above what it must keep at q (n,), of those within their influence."""
+    def nearest(self, q: Array, start: Array, reserve: float = 0.0) -> TooNear | None:
+        """The pair with the least room above what it must keep at q (n,), of those within their influence.
+
+        That is its margin and a `reserve` (m), see `floors`.
+        """
         near = self._within(q)
         if not len(near.pairs):
             return None
-        floors = self.floors(near.pairs, start)
+        floors = self.floors(near.pairs, start, reserve)
         k = int(np.argmin(near.distance - floors))
         return TooNear(int(near.pairs[k]), float(near.distance[k]), float(floors[k]))
 
