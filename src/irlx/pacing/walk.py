@@ -81,7 +81,7 @@ def walk(
         elapsed = len(rows) * limiter.dt
         keeping = clearance.tick(q, limiter.dt, elapsed) if clearance is not None else None
         problem = TickProblem(target, q, bounds, criterion_of(demand), free, keeping)
-        solution = _solved(solver, problem, seeds.next(), thorough, clearance, (elapsed, limiter.dt))
+        solution, seen = _solved(solver, problem, seeds.next(), thorough, clearance, (elapsed, limiter.dt))
         iterations += solution.iterations
         if not solution.solved:
             halt = Halt(demand, bounds, solution)
@@ -94,7 +94,7 @@ def walk(
         q = reached
         rows.append(q)
         if clearance is not None:
-            closest.append(clearance.closest(q, elapsed + limiter.dt))
+            closest.append(clearance.closest(q, elapsed + limiter.dt) if seen else None)
         held = np.count_nonzero(solution.active) > 0
         flags.append(active_flags(solution.active, bounds) if held else unheld)
         done.append(demand)
@@ -115,17 +115,18 @@ def _solved(
     thorough: bool,
     clearance: Clearance | None,
     span: tuple[float, float],
-) -> TickSolution:
+) -> tuple[TickSolution, bool]:
     """The solution of a tick, found again with floors where all was far and it ends near something.
 
-    `span`: begin and duration (s) of the tick.
+    `span`: begin and duration (s) of the tick. Also tells whether anything may be near at its end.
     """
     solution = solver.solve(problem, seed, thorough)
-    unseen = clearance if problem.clearance is None and solution.solved else None
-    if unseen is None or not unseen.nears(solution.q, sum(span)):
-        return solution
-    watched = problem._replace(clearance=unseen.watched_tick(problem.q, span[1], span[0]))
-    return solver.solve(watched, seed, thorough)
+    if clearance is None or problem.clearance is not None or not solution.solved:
+        return solution, clearance is not None
+    if not clearance.nears(solution.q, span[0] + span[1]):
+        return solution, False
+    watched = problem._replace(clearance=clearance.watched_tick(problem.q, span[1], span[0]))
+    return solver.solve(watched, seed, thorough), True
 
 
 class _Seeds:

@@ -152,7 +152,7 @@ class KeepingClear(Term):
         rates = opens.dot(basis)
         moves = points.reshape(-1, len(basis)).dot(basis).reshape(len(rates), 3, -1)
         moved = np.matmul(moves, rates[:, :, None])[:, :, 0]
-        return _Ways(basis, rates, np.einsum("ij,ij->i", rates, rates), np.einsum("ij,ij->i", moved, moved))
+        return _Ways(basis, rates, _squares(rates), _squares(moved))
 
     def _gained(self, q: Array, near: Near, opens: Array, way: Array) -> Array:
         """The part of each pair's push (P,) that is worth it on the `way` of the free joints that all lead.
@@ -183,13 +183,13 @@ def _is_round(pair: WatchedPair) -> bool:
 class _Ways(NamedTuple):
     """How f free joints open the gaps of P pairs with the tool held: `basis` N (f, k) of its null space.
 
-    `rates` g (P, k) = N' J_k' v, `gain` (P,) |g|^2, `moved` (P,) |J_k N g|^2.
+    `rates` g (P, k) = N' J_k' v, `gain` |g|^2 and `moved` |J_k N g|^2 of each.
     """
 
     basis: Array
     rates: Array
-    gain: Array
-    moved: Array
+    gain: list[float]
+    moved: list[float]
 
 
 def _shares(ways: _Ways, alpha: list[float]) -> list[float]:
@@ -200,10 +200,14 @@ def _shares(ways: _Ways, alpha: list[float]) -> list[float]:
     joints hardly move, would else be worth any motion of them.
     """
     shares = []
-    for most, gain, moved in zip(alpha, ways.gain.tolist(), ways.moved.tolist(), strict=True):
+    for most, gain, moved in zip(alpha, ways.gain, ways.moved, strict=True):
         asked, fastest = most * gain * sqrt(gain), _FASTEST * _PER_TIME * moved
         shares.append(fastest / max(asked, 1e-300) if asked > fastest else 1.0)
     return shares
+
+
+def _squares(rows: Array) -> list[float]:
+    return [sum([x * x for x in row]) for row in rows.tolist()]
 
 
 def _null_space(jacobian: Array) -> Array:
