@@ -33,16 +33,16 @@ xyz = [250, 330, 700]
 PROGRAM = """PROGRAM ball;
 BEGIN
   {on}
-  MOVE_INC LIN POSITION(0, 100, 0) SPEED := 60 C_CP := 20;
-  MOVE_INC LIN POSITION(0, 0, 60) SPEED := 60;
+  MOVE_INC LIN POSITION(0, 60, 0) SPEED := 30 C_CP := 20;
+  MOVE_INC LIN POSITION(0, 0, 40) SPEED := 30;
   WAIT 0.3 SEC;
-  MOVE_INC LIN POSITION(0, -40, 0) SPEED := 60;
+  MOVE_INC LIN POSITION(0, -40, 0) SPEED := 30;
 ENDPROGRAM;
 """
 
 
-@pytest.mark.parametrize("on", [("ball", "post"), ("post",)])
-def test_samples_have_the_pair_with_the_least_room(on, tmp_path):
+def test_samples_have_the_pair_with_the_least_room(tmp_path):
+    on = ("ball", "post")
     (tmp_path / "ball.toml").write_text(CELL, encoding="utf-8")
     switches = " ".join(f"OBSTACLE {name};" for name in on)
     (tmp_path / "ball.irl").write_text(PROGRAM.format(on=switches), encoding="utf-8")

@@ -10,7 +10,7 @@ from irlx.pacing.impossible import Surroundings, _too_near
 from irlx.pacing.slowdown.planned import Refusal
 from irlx.pacing.too_near import told
 from irlx.scene.distances import Distances
-from irlx.scene.obstacle import Obstacle
+from irlx.scene.obstacle import Obstacle, Waypoint
 from irlx.scene.watched_pair import watched_pairs
 from irlx.solids.placement import Placement
 from irlx.solids.shape import Solid, Sphere
@@ -71,3 +71,20 @@ def test_digits_tell_distances_apart(distance, floor, words) -> None:
     assert around.clearance is not None
     said = told(around.clearance, TooNear(0, distance, floor))
     assert (said["distance"], said["floor"]) == words
+
+
+@pytest.mark.parametrize("elapsed", [0.0, 1.5])
+def test_obstacles_that_move_are_told_where_they_are_then(elapsed) -> None:
+    cell, kinematics = cell_of("arm7")
+    way = (Waypoint(0.0, Placement((0.25, 0.9, 0.75))), Waypoint(2.0, Placement((0.25, 0.3, 0.75))))
+    ball = Obstacle("ball", (Solid(Sphere(0.05)),), way[0].placement, 0.5, 1.0, way)
+    pairs = watched_pairs(kinematics, [ball], None)
+    distances = Distances(kinematics, pairs)
+    clearance = Clearance(Distances(kinematics, pairs)).beginning(0.0)
+    around = Surroundings(kinematics, cell.limits, np.ones(7, dtype=bool), clearance=clearance)
+    solution = TickSolution(TickStatus.TOO_NEAR, cell.start, np.zeros(7, dtype=np.int8), np.zeros(6), 3)
+    found = _too_near(Refusal(0.1, solution=solution, elapsed=elapsed), around)
+    distances.at_time(elapsed)
+    every = distances.of(cell.start, np.arange(len(pairs))).distance
+    assert found is not None
+    assert found.distance == pytest.approx(every.min(), abs=1e-12)

@@ -134,10 +134,10 @@ def _too_near(refusal: Refusal, around: Surroundings) -> TooNear | None:
     if solution is None or around.clearance is None:
         return None
     start = solution.q if around.start is None else around.start
-    found = around.clearance.nearest(solution.q, start)
+    found = around.clearance.nearest(solution.q, start, elapsed=refusal.elapsed)
     if found is not None and found.distance >= found.floor:
         # The margin alone would let it go on; plans keep more.
-        found = around.clearance.nearest(solution.q, start, refusal.reserve)
+        found = around.clearance.nearest(solution.q, start, refusal.reserve, refusal.elapsed)
     if found is None or solution.status is TickStatus.TOO_NEAR:
         return found
     return found if found.distance <= found.floor + _HARDLY_CLEAR else None

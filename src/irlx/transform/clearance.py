@@ -185,11 +185,13 @@ class Clearance:
                 return row, found
         return None
 
-    def nearest(self, q: Array, start: Array, reserve: float = 0.0) -> TooNear | None:
+    def nearest(self, q: Array, start: Array, reserve: float = 0.0, elapsed: float = 0.0) -> TooNear | None:
         """The pair with the least room above what it must keep at q (n,), of those within their influence.
 
-        That is its margin and a `reserve` (m), see `floors`.
+        That is its margin and a `reserve` (m), see `floors`; obstacles are where they are `elapsed` s after
+        the begin of the motion.
         """
+        self.after(elapsed)
         near = self._within(q)
         if not len(near.pairs):
             return None

@@ -64,7 +64,7 @@ class Refusal:
     `solution` holds the failed step of the walk. Else the clock of `timed` stands at `knot`, for the bound
     it names. Else only the differences of the rows say no: `broken`, its row counted from the start of
     the motion. Or something comes too `near`, in a `row` from the start of the motion. `reserve` (m) is what
-    the walk kept beside margins.
+    the walk kept beside margins, and `elapsed` the time (s) from the start at which its step failed.
     """
 
     s: float
@@ -75,6 +75,7 @@ class Refusal:
     near: TooNear | None = None
     row: int = 0
     reserve: float = 0.0
+    elapsed: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -151,7 +152,8 @@ def _with_reserve(
     passage = elastic_walk(model, grid, task.start, task.criterion_of, bounds, reserve)
     if passage.stopped is not None:
         interval, solution = passage.stopped
-        return Refusal(float(grid.s[interval + 1]), solution=solution, reserve=reserve)
+        place = float(grid.s[interval + 1])
+        return Refusal(place, solution=solution, reserve=reserve, elapsed=passage.elapsed)
     q = passage.q
     # Knots are close: the one next to a place stands for it.
     through = tuple(grid.inner_knot(place) for place in task.through)
