@@ -35,6 +35,9 @@ pytestmark = [pytest.mark.req("TRF-13"), pytest.mark.req("TRF-14")]
 QUICK = (0, 1, 4, 7, 8, 10, 13, 15, 17, 18, 19, 32, 33, 34, 37, 40, 152, 153, 155, 156, 157, 166, 179, 181)
 """Seeds of scenes of all kinds that take little time."""
 
+SWINGING = (1197, 1409)
+"""Seeds of scenes in which pushes make joints swing: beside a cube; a link that goes with the tool."""
+
 LONG = 500
 MOST_TURNS, MOST_FLICKER = 12, 4
 REFUSALS = {
@@ -124,6 +127,7 @@ def run(scene: DrawnScene, judged: Judged, where: str) -> None:
         if refused:
             codes = {found.code for found in refused if found.is_error}
             assert codes <= REFUSALS, f"{where}: {', '.join(map(str, refused))}"
+            assert all(map(tells_the_truth, refused)), f"{where}: {', '.join(map(str, refused))}"
             assert np.array_equal(pacer.q, before), f"{where}: a refusal moved the robot"
             assert pacer.tick == tick, f"{where}: a refusal took time"
             judged.ended = min(codes)
@@ -138,6 +142,14 @@ def run(scene: DrawnScene, judged: Judged, where: str) -> None:
             judge(scene, block, rows, np.vstack([before, rows.q]), obstacles, judged, where)
             fixed = [joint - 1 for joint in frozen]
             assert np.all(rows.q[:, fixed] == before[fixed]), f"{where}: a frozen joint moved"
+
+
+def tells_the_truth(found: Diagnostic) -> bool:
+    """Whether what is told to come too near is nearer than what is told to be kept."""
+    if found.code not in {"IRL560", "IRL561"}:
+        return True
+    distance, floor = (float(str(found.data[word]).split()[0]) for word in ("distance", "floor"))
+    return distance < floor
 
 
 def judge(scene, block, rows: MotionRows, q: np.ndarray, obstacles: list[Obstacle], judged: Judged, where):
@@ -260,6 +272,14 @@ def assert_telling(found: list[Judged]) -> None:
 
 def test_drawn_scenes():
     assert_telling(in_turn(QUICK))
+
+
+@pytest.mark.parametrize("seed", SWINGING)
+def test_a_calmer_criterion_ends_swinging(seed, monkeypatch):
+    assert one_scene(seed).ended == "done"
+    monkeypatch.setattr("irlx.pacing.path_motion.swings", lambda *_: False)
+    with pytest.raises(AssertionError, match="accelerations turn round"):
+        one_scene(seed)
 
 
 @pytest.mark.slow

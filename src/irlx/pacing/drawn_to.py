@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import hypot
 
 import numpy as np
@@ -89,10 +90,15 @@ def term_of(
     cyclic = situation.options.cyclic_posture
     term = posture_term(model, situation.q, plan.programmed, asked, cyclic, situation.qp)
     added = _added_terms(situation, block, plan, limits)
-    clearance = situation.clearance
-    if clearance is not None and any(pair.obstacle is not None for pair in clearance.distances.pairs):
-        added = (*added, Weighted(KeepingClear(clearance.distances, situation.free), 1.0))
-    return term.with_terms(added, plan.programmed)
+    clearance, law = situation.clearance, plan.programmed
+    found = term.with_terms(added, law)
+    if clearance is None or not any(pair.obstacle is not None for pair in clearance.distances.pairs):
+        return found
+    # What pushes may make the motion swing; what the rows keep clear nothing has to push.
+    for calm in (True, False):
+        keeping = Weighted(KeepingClear(clearance.distances, situation.free, calm), 1.0)
+        found = replace(term.with_terms((*added, keeping), law), calmer=found)
+    return found
 
 
 def _added_terms(

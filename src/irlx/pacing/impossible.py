@@ -133,7 +133,11 @@ def _too_near(refusal: Refusal, around: Surroundings) -> TooNear | None:
     solution = refusal.solution
     if solution is None or around.clearance is None:
         return None
-    found = around.clearance.nearest(solution.q, solution.q if around.start is None else around.start)
+    start = solution.q if around.start is None else around.start
+    found = around.clearance.nearest(solution.q, start, elapsed=refusal.elapsed)
+    if found is not None and found.distance >= found.floor:
+        # The margin alone would let it go on; plans keep more.
+        found = around.clearance.nearest(solution.q, start, refusal.reserve, refusal.elapsed)
     if found is None or solution.status is TickStatus.TOO_NEAR:
         return found
     return found if found.distance <= found.floor + _HARDLY_CLEAR else None

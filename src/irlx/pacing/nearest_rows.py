@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.transform.clearance import Clearance
+from irlx.transform.clearance import Clearance, Closest
 
 Array = NDArray[np.float64]
 
@@ -28,6 +29,10 @@ class NearestRows:
     pairs: tuple[tuple[str, str], ...]
     margin: Array
 
+    def part(self, first: int, last: int) -> NearestRows:
+        """Rows from `first` on, before `last`."""
+        return replace(self, pair=self.pair[first:last], distance=self.distance[first:last])
+
 
 def nearest_rows(clearance: Clearance | None, q: Array, dt: float) -> NearestRows | None:
     """What comes nearest at postures q (N, n), the first one dt s after the begin of the motion.
@@ -36,22 +41,22 @@ def nearest_rows(clearance: Clearance | None, q: Array, dt: float) -> NearestRow
     """
     if clearance is None:
         return None
-    distances = clearance.distances
+    found = [clearance.closest(posture, (row + 1) * dt) for row, posture in enumerate(q)]
+    return nearest_of(clearance, found)
+
+
+def nearest_of(clearance: Clearance, found: Sequence[Closest]) -> NearestRows:
+    """What comes nearest in N rows, from what `Clearance.closest` tells of each."""
     names: dict[tuple[str, str], int] = {}
     margins: list[float] = []
-    pair, distance = np.full(len(q), FAR, dtype=np.int64), np.full(len(q), np.inf)
-    for row, posture in enumerate(q):
-        clearance.after((row + 1) * dt)
-        if distances.far(posture):
+    pair, distance = np.full(len(found), FAR, dtype=np.int64), np.full(len(found), np.inf)
+    for row, nearest in enumerate(found):
+        if nearest is None:
             continue
-        near = distances.near(posture)
-        if not len(near.pairs):
-            continue
-        k = int(np.argmin(near.distance - distances.margin[near.pairs]))
-        watched = distances.pairs[int(near.pairs[k])]
+        watched = clearance.distances.pairs[nearest[0]]
         key = (watched.link, watched.other)
         if key not in names:
             names[key] = len(names)
             margins.append(watched.margin)
-        pair[row], distance[row] = names[key], near.distance[k]
+        pair[row], distance[row] = names[key], nearest[1]
     return NearestRows(pair, distance, tuple(names), np.array(margins))

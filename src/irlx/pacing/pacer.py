@@ -315,7 +315,7 @@ class Pacer:
             return None
         dt = self.setup.dt * rows.ticks / len(rows)
         clear = self._clear_from_now
-        nearest = nearest_rows(clear, rows.q, dt)
+        nearest = nearest_rows(clear, rows.q, dt) if rows.nearest is None else rows.nearest
         place = self.locate(rows.block.origin)
         if rows.stops:
             self.warnings += passed_by(clear, rows.q, (rows.first_tick, dt), place)

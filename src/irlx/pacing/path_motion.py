@@ -18,8 +18,10 @@ from irlx.pacing.row_check import BrokenBound, broken_bound
 from irlx.pacing.slowdown.model import Model
 from irlx.pacing.slowdown.planned import MotionTask, PlannedMotion, Refusal, Ticking, plan_motion
 from irlx.pacing.slowing import Slowing, slowings
+from irlx.pacing.swinging import swings
 from irlx.pacing.touching import touching
 from irlx.pacing.walk import Halt, Walk, walk
+from irlx.transform.clearance import Closest
 from irlx.transform.step_bounds import BoundSource, StepLimiter
 from irlx.transform.tick import TickSolver
 
@@ -32,7 +34,7 @@ class PacedPath:
 
     `active` (M, n) flags as in `MotionRows`, `demands` of each row, the posture `term` that they follow,
     `slowings` where it runs slower than programmed (empty for an ordinary walk), `planned` whether it is a
-    planned motion.
+    planned motion; `closest` is that of an ordinary walk tick by tick.
     """
 
     q: Array
@@ -42,6 +44,7 @@ class PacedPath:
     term: PostureTerm
     slowings: tuple[Slowing, ...] = ()
     planned: bool = False
+    closest: tuple[Closest, ...] | None = None
 
 
 @dataclass(frozen=True)
@@ -78,8 +81,24 @@ class PathMotion:
 def pace_path(motion: PathMotion, model: Model, solver: TickSolver) -> PacedPath | Failure:
     """Rows of a motion: at the programmed speed where every tick can, else slowed where it must be.
 
-    Where neither is possible with its posture term, with the one that this names instead.
+    Where neither is possible with its posture term, with the one that this names instead, and so where it
+    makes the joints swing.
     """
+    found = _paced_or_otherwise(motion, model, solver)
+    calmer = motion.term.calmer
+    if calmer is None or isinstance(found, Failure) or not _swings(motion, found, model):
+        return found
+    second = pace_path(replace(motion, term=calmer), model, solver)
+    return found if isinstance(second, Failure) or _swings(motion, second, model) else second
+
+
+def _swings(motion: PathMotion, found: PacedPath, model: Model) -> bool:
+    if motion.resolution.is_coarse:
+        return False
+    return swings(np.vstack([motion.start, found.q]), model.limits, motion.dt)
+
+
+def _paced_or_otherwise(motion: PathMotion, model: Model, solver: TickSolver) -> PacedPath | Failure:
     found = _paced(motion, model, solver)
     if isinstance(found, Failure) and motion.term.otherwise is not None:
         second = _paced(replace(motion, term=motion.term.otherwise), model, solver)
@@ -154,7 +173,8 @@ def _walked(
 
 
 def _as_walked(motion: PathMotion, walked: Walk) -> PacedPath:
-    return PacedPath(walked.q, walked.active, walked.demands, walked.iterations, motion.term)
+    closest = None if motion.resolution.is_coarse else walked.closest
+    return PacedPath(walked.q, walked.active, walked.demands, walked.iterations, motion.term, closest=closest)
 
 
 def _task(motion: PathMotion) -> MotionTask:

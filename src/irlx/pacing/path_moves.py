@@ -20,6 +20,7 @@ from irlx.pacing.drawn_to import check_postures, postures_asked, term_of, warn_o
 from irlx.pacing.errors import PacingError
 from irlx.pacing.impossible import Surroundings, explain_failure, goal_shortfall, slower_than_allowed
 from irlx.pacing.motion import Motion
+from irlx.pacing.nearest_rows import NearestRows, nearest_of
 from irlx.pacing.options import LimitsInForce
 from irlx.pacing.path_motion import Failure, PacedPath, PathMotion, pace_path
 from irlx.pacing.posed import Pose, end_pose, posed
@@ -159,7 +160,17 @@ def _rows(situation: Situation, block: MoveBlock, plan: PlannedChain, paced: Pac
             first_tick=situation.tick + 1,
         ),
         span=paced.demands[-1].tick + 1 - situation.tick,
+        nearest=_nearest(situation, paced),
     )
+
+
+def _nearest(situation: Situation, paced: PacedPath) -> NearestRows | None:
+    """What comes nearest in the rows and the hold row, where the motion has looked."""
+    clearance = situation.clearance
+    if clearance is None or paced.closest is None:
+        return None
+    hold = clearance.closest(paced.q[-1], (len(paced.q) + 1) * situation.dt)
+    return nearest_of(clearance, [*paced.closest, hold])
 
 
 def _tool(situation: Situation, paced: PacedPath) -> tuple[Array, Array, Array, Array]:

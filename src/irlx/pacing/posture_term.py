@@ -29,13 +29,15 @@ class PostureTerm:
     before.
 
     `draws` tells that it draws the joints to a posture, and `through` at which path parameters on the way
-    others are asked for; `otherwise` is the term for a motion that it makes impossible.
+    others are asked for; `otherwise` is the term for a motion that it makes impossible, `calmer` that for one
+    that it makes swing.
     """
 
     at: Callable[[float, float], Criterion]
     draws: bool
     through: tuple[float, ...] = ()
     otherwise: PostureTerm | None = None
+    calmer: PostureTerm | None = None
 
     def with_terms(self, terms: tuple[Weighted, ...], law: TimeLaw) -> PostureTerm:
         """The same with added terms, which act by the time that the way takes at the law's cruising speed."""

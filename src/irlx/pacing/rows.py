@@ -128,6 +128,7 @@ def _part(rows: MotionRows, block: MoveBlock, span: tuple[int, int], way: tuple[
         **{name: getattr(rows, name)[part] for name in _BY_ROW},
         length=way[1] - way[0],
         path=None if rows.path is None else _part_of_path(rows.path, span, way),
+        nearest=None if rows.nearest is None else rows.nearest.part(first, last),
         stops=last == len(rows),
         iterations=rows.iterations if first == 0 else 0,
     )

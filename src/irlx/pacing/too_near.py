@@ -22,16 +22,20 @@ def told_pair(pair: WatchedPair) -> str:
     return f"link '{pair.link}' and {other} '{pair.other}'"
 
 
-def apart(distance: float) -> str:
+def apart(distance: float, digits: int = 4) -> str:
     """A distance in words, mm; below 0 solids overlap."""
     overlap = " (they overlap)" if distance < 0.0 else ""
-    return f"{distance * 1e3:.4g} mm{overlap}"
+    return f"{distance * 1e3:.{digits}g} mm{overlap}"
 
 
 def told(clearance: Clearance, found: TooNear) -> dict[str, Any]:
-    """What messages say of a pair."""
+    """What messages say of a pair, with as many digits as tell both distances apart."""
     pair = clearance.distances.pairs[found.pair]
-    return {"pair": told_pair(pair), "distance": apart(found.distance), "floor": apart(found.floor)}
+    for digits in range(4, 10):
+        distance, floor = apart(found.distance, digits), apart(found.floor, digits)
+        if distance != floor:
+            break
+    return {"pair": told_pair(pair), "distance": distance, "floor": floor}
 
 
 def check_rows(

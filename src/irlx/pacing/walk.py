@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.pacing.demand import Demand
-from irlx.transform.clearance import Clearance
+from irlx.transform.clearance import Clearance, Closest
 from irlx.transform.criteria.criterion import Criterion
 from irlx.transform.step_bounds import StepBounds, StepLimiter
 from irlx.transform.tick import TickSolution, TickSolver
@@ -37,7 +37,8 @@ class Halt:
 class Walk:
     """Postures of the ticks done: `q` (k, n), `active` (k, n) as in `MotionRows`, `demands` of each tick.
 
-    `halt` is None where every tick was done.
+    `halt` is None where every tick was done. `closest` is what came nearest in each row, None where nothing
+    is kept clear.
     """
 
     q: Array
@@ -45,6 +46,7 @@ class Walk:
     demands: tuple[Demand, ...]
     iterations: int
     halt: Halt | None
+    closest: tuple[Closest, ...] | None = None
 
 
 def walk(
@@ -70,6 +72,7 @@ def walk(
     rows: list[Array] = []
     flags: list[NDArray[np.int8]] = []
     done: list[Demand] = []
+    closest: list[Closest] = []
     iterations = 0
     halt: Halt | None = None
     for demand in demands:
@@ -78,12 +81,7 @@ def walk(
         elapsed = len(rows) * limiter.dt
         keeping = clearance.tick(q, limiter.dt, elapsed) if clearance is not None else None
         problem = TickProblem(target, q, bounds, criterion_of(demand), free, keeping)
-        seed = seeds.next()
-        solution = solver.solve(problem, seed, thorough)
-        unseen = clearance if keeping is None and solution.solved else None
-        if unseen is not None and unseen.nears(solution.q, elapsed + limiter.dt):
-            problem = problem._replace(clearance=unseen.watched_tick(q, limiter.dt, elapsed))
-            solution = solver.solve(problem, seed, thorough)
+        solution, seen = _solved(solver, problem, seeds.next(), thorough, clearance, (elapsed, limiter.dt))
         iterations += solution.iterations
         if not solution.solved:
             halt = Halt(demand, bounds, solution)
@@ -95,6 +93,8 @@ def walk(
         speed = step / limiter.dt
         q = reached
         rows.append(q)
+        if clearance is not None:
+            closest.append(clearance.closest(q, elapsed + limiter.dt) if seen else None)
         held = np.count_nonzero(solution.active) > 0
         flags.append(active_flags(solution.active, bounds) if held else unheld)
         done.append(demand)
@@ -104,7 +104,29 @@ def walk(
         tuple(done),
         iterations,
         halt,
+        None if clearance is None else tuple(closest),
     )
+
+
+def _solved(
+    solver: TickSolver,
+    problem: TickProblem,
+    seed: Array,
+    thorough: bool,
+    clearance: Clearance | None,
+    span: tuple[float, float],
+) -> tuple[TickSolution, bool]:
+    """The solution of a tick, found again with floors where all was far and it ends near something.
+
+    `span`: begin and duration (s) of the tick. Also tells whether anything may be near at its end.
+    """
+    solution = solver.solve(problem, seed, thorough)
+    if clearance is None or problem.clearance is not None or not solution.solved:
+        return solution, clearance is not None
+    if not clearance.nears(solution.q, span[0] + span[1]):
+        return solution, False
+    watched = problem._replace(clearance=clearance.watched_tick(problem.q, span[1], span[0]))
+    return solver.solve(watched, seed, thorough), True
 
 
 class _Seeds:

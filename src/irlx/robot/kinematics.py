@@ -235,6 +235,13 @@ class Kinematics:
         still = moved <= _STILL * max(1.0, self.description.reach)
         return Task(tuple(name for name in self.task.left_out if still[COORDINATES.index(name)]))
 
+    def rows_here(self, q: Array) -> Array:
+        """The matrix (m, n) of `here`."""
+        if not self._plain:
+            return self.here(q)[1]
+        pin.computeJointJacobians(self.model, self.data, q)
+        return np.asarray(pin.getFrameJacobian(self.model, self.data, self._tip_frame, _LOCAL))
+
     def here(self, q: Array) -> tuple[Array, Array]:
         """`difference` to the tool's own pose at q: constraints alone may be left."""
         return self.difference(q, self.target(*self.tool_pose(q)))

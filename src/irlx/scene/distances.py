@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
+import coal
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
@@ -28,8 +29,6 @@ _COARSER = (1e-8, 1e-7, 1e-6, 1e-5)
 """The same where solids overlap and the search gives up at less."""
 
 _ENDLESS = 1e100
-_GUESS = np.array([1.0, 0.0, 0.0])
-_FIRST_VERTICES = np.zeros(2, dtype=np.int32)
 _CROSS = np.zeros((3, 9))
 """A point times this is the matrix, row by row, that turns an angular velocity into the point's velocity."""
 _CROSS[0, [5, 7]] = 1.0, -1.0
@@ -37,8 +36,7 @@ _CROSS[1, [2, 6]] = -1.0, 1.0
 _CROSS[2, [1, 3]] = 1.0, -1.0
 
 
-@dataclass(frozen=True)
-class Near:
+class Near(NamedTuple):
     """Pairs that are near in a posture, P of them, by their numbers `pairs` (P,).
 
     `distance` (P,) m, negative where they overlap; `away` (P, 3) unit vectors in the world along which the
@@ -76,8 +74,8 @@ class Distances:
     """Distances between watched pairs of solids, obstacles where their trajectories or `sightings` put them.
 
     A pair is looked at again only where the joints have moved far enough since it was looked at last
-    (`Levers`), or the obstacle, and once in a posture; what is found does not depend on that. Not safe for
-    use by several threads at once.
+    (`Levers`), or the obstacle, and once in a posture; what is found does not depend on that. Postures must
+    not be written to once they have been handed in. Not safe for use by several threads at once.
     """
 
     def __init__(
@@ -101,15 +99,16 @@ class Distances:
         for first, second in zip(self._first, self._second, strict=True):
             self._model.addCollisionPair(pin.CollisionPair(int(first), int(second)))
         self._geometry = pin.GeometryData(self._model)
-        self._requests = list(self._geometry.distanceRequests)
-        for request in self._requests:
-            request.gjk_tolerance = request.epa_tolerance = _TOLERANCE
+        self._requests = self._geometry.distanceRequests
+        for number in range(len(pairs)):
+            self._requests[number] = _request()
         self._data = kinematics.model.createData()
         self._levers = Levers.of(kinematics, self._bodies, self._radii, self._first, self._second)
         self._last = np.zeros(kinematics.joints)
         self._least = np.full(len(pairs), -np.inf)
         self._slack = -np.inf
         self._longest = self._levers.longest
+        self._far_at: Array | None = None
         self._here: Array | None = None
         sizes = np.array(self._sizes)
         # Half-spaces have no size; what they give is taken for as long as it is a distance at all.
@@ -119,12 +118,13 @@ class Distances:
         self._found = np.empty((len(pairs), 10))
         self._all_near: Near | None = None
         self._columns: Array = self._data.J
-        self._carries = np.zeros((kinematics.model.njoints, kinematics.joints))
+        carries = np.zeros((kinematics.model.njoints, kinematics.joints))
         for joint in range(1, kinematics.model.njoints):
-            self._carries[joint, [above - 1 for above in kinematics.model.supports[joint] if above]] = 1.0
+            carries[joint, [above - 1 for above in kinematics.model.supports[joint] if above]] = 1.0
         bodies = np.array(self._bodies, dtype=np.intp)
-        self._first_body = bodies[self._first] if len(pairs) else self._first
-        self._second_body = bodies[self._second] if len(pairs) else self._second
+        self._first_carried = carries[bodies[self._first], None] if len(pairs) else carries[:0, None]
+        self._second_carried = carries[bodies[self._second], None] if len(pairs) else carries[:0, None]
+        self._others_rest = not np.any(self._second_carried)
         self._time = self._looked_at = 0.0
         self._rates = np.array([self._speeds[k] for k in self._second])
         self._fastest = float(np.max(self._rates, initial=0.0))
@@ -140,7 +140,7 @@ class Distances:
         if not self._placed or (time, count, before) == (self._time, self._count, self._before):
             return
         self._time, self._count, self._before = time, count, before
-        self._all_near = None
+        self._all_near = self._far_at = None
         for placed in self._placed:
             way, name = placed.way, placed.name
             pose = way.pose(time) if seen is None else seen.pose(name, time, way, before)
@@ -183,12 +183,18 @@ class Distances:
 
     def far(self, q: Array) -> bool:
         """Whether it is certain without a look that no pair is within its influence at posture q (n,)."""
+        if q is self._far_at:
+            return True
         if self._slack <= 0.0 or self._longest is None:
             return False
         moved = self._longest.dot(np.abs(q - self._last))
         if self._fastest > 0.0:
             moved += self._fastest * abs(self._time - self._looked_at)
-        return bool(moved < self._slack)
+        if not moved < self._slack:
+            return False
+        # The end of a tick, which the next one begins with.
+        self._far_at = q
+        return True
 
     def near(self, q: Array, within: Array | None = None) -> Near:
         """Pairs nearer than `within` (K,) m, by default their influence, at posture q (n,)."""
@@ -204,48 +210,58 @@ class Distances:
         found = self.of(q, asked)
         least[asked] = found.distance
         self._least, self._last = least, q.copy()
-        self._slack = float((least - self.influence).min(initial=np.inf))
         close = found.distance < reach[asked]
         found = found if np.count_nonzero(close) == len(asked) else found.chosen(close)
+        some_near = everything and len(found.pairs) > 0
+        self._slack = -np.inf if some_near else float((least - self.influence).min(initial=np.inf))
         self._all_near = found if everything else None
         return found
 
     def of(self, q: Array, pairs: Numbers) -> Near:
         """These pairs at posture q (n,), however far."""
-        if len(pairs):
-            self._place(q)
-            for pair in pairs[~self._known[pairs]].tolist():
-                self._look(pair)
+        if not len(pairs):
+            nothing = np.zeros((0, 3))
+            return Near(pairs, np.zeros(0), nothing, nothing, nothing)
+        self._place(q)
+        known = self._known[pairs]
+        unknown = len(pairs) - np.count_nonzero(known)
+        if unknown:
+            self._look(pairs if unknown == len(pairs) else pairs[~known])
         found = self._found[pairs]
-        return Near(pairs, found[:, 0], found[:, 1:4], found[:, 4:7], found[:, 7:])
+        return Near(pairs, found[:, 0], -found[:, 1:4], found[:, 4:7], found[:, 7:])
 
-    def _look(self, pair: int) -> None:
-        found = self._found[pair]
-        self._search(pair, found)
-        if not found[0] >= self._deepest[pair]:
-            self._search_coarsely(pair, found)
-        if not found[0] >= self._deepest[pair]:
-            self._mend(pair, found)
-        self._known[pair] = True
+    def _look(self, pairs: Numbers) -> None:
+        """Distance, unit vector from the link to the other one and nearest points of pairs."""
+        found = self._search(pairs.tolist())
+        self._found[pairs] = found
+        good = found[:, 0] >= self._deepest[pairs]
+        if np.count_nonzero(good) < len(pairs):
+            for pair in pairs[~good].tolist():
+                self._search_coarsely(pair, self._found[pair])
+        self._known[pairs] = True
 
-    def _search(self, pair: int, found: Array) -> None:
-        # Pinocchio begins where the last search ended: bits would depend on what was asked before.
-        request = self._requests[pair]
-        request.cached_gjk_guess, request.cached_support_func_guess = _GUESS, _FIRST_VERTICES
-        result = pin.computeDistance(self._model, self._geometry, pair)
-        found[0] = result.min_distance
-        found[1:4] = result.normal
-        np.negative(found[1:4], out=found[1:4])
-        found[4:7] = result.getNearestPoint1()
-        found[7:] = result.getNearestPoint2()
+    def _search(self, pairs: list[int]) -> Array:
+        model, geometry = self._model, self._geometry
+        parts: list[Any] = []
+        for pair in pairs:
+            result = pin.computeDistance(model, geometry, pair)
+            parts += (
+                (result.min_distance,),
+                result.normal,
+                result.getNearestPoint1(),
+                result.getNearestPoint2(),
+            )
+        return np.concatenate(parts).reshape(-1, 10)
 
     def _search_coarsely(self, pair: int, found: Array) -> None:
         """How deep an overlap is, where rounding ends the search at the usual tolerance without a result."""
         request = self._requests[pair]
         for request.epa_tolerance in _COARSER:
-            self._search(pair, found)
+            found[:] = self._search([pair])[0]
             if found[0] >= self._deepest[pair]:
                 break
+        else:
+            self._mend(pair, found)
         request.epa_tolerance = _TOLERANCE
 
     def _mend(self, pair: int, found: Array) -> None:
@@ -263,17 +279,16 @@ class Distances:
         else:
             away, size = other.rotation[:, 2], 0.0
         found[0] = min(float(way.dot(away)) - size - self._sizes[first], 0.0)
-        found[1:4], found[4:7], found[7:] = away, link.translation, other.translation
+        found[1:4], found[4:7], found[7:] = -away, link.translation, other.translation
 
     def jacobians(self, q: Array, near: Near) -> Array:
         """d(point on link - point on other)/dq (P, 3, n), both points fixed on their bodies, at posture q."""
         if not len(near.pairs):
             return np.zeros((0, 3, q.size))
         self._place(q)
-        found = self._point_jacobians(self._first_body[near.pairs], near.on_link)
-        second = self._second_body[near.pairs]
-        if np.count_nonzero(second):
-            found -= self._point_jacobians(second, near.on_other)
+        found = self._point_jacobians(self._first_carried[near.pairs], near.on_link)
+        if not self._others_rest:
+            found -= self._point_jacobians(self._second_carried[near.pairs], near.on_other)
         return found
 
     def rates(self, q: Array, near: Near) -> Array:
@@ -282,12 +297,12 @@ class Distances:
             return np.zeros((0, q.size))
         return np.asarray(np.matmul(near.away[:, None, :], self.jacobians(q, near))[:, 0, :])
 
-    def _point_jacobians(self, bodies: Numbers, points: Array) -> Array:
-        """Jacobians (P, 3, n) of points (P, 3) in the world, each fixed on one of the bodies (P,)."""
+    def _point_jacobians(self, carried: Array, points: Array) -> Array:
+        """Jacobians (P, 3, n) of points (P, 3) in the world, each on a body; `carried` (P, 1, n) by which."""
         turned = points.dot(_CROSS).reshape(-1, 3)
         found = turned.dot(self._columns[3:]).reshape(-1, 3, self.kinematics.joints)
         found += self._columns[:3]
-        found *= self._carries[bodies][:, None, :]
+        found *= carried
         return np.asarray(found)
 
     def _place(self, q: Array) -> None:
@@ -337,5 +352,13 @@ class Distances:
         return number
 
 
+def _request() -> coal.DistanceRequest:
+    """How a pair is searched. No search begins where the last one ended, as Pinocchio's own requests ask for:
+    bits would depend on what was asked before."""
+    request = coal.DistanceRequest()
+    request.gjk_tolerance = request.epa_tolerance = _TOLERANCE
+    return request
+
+
 def _same(first: Array, second: Array) -> bool:
-    return first is second or np.count_nonzero(first == second) == second.size
+    return first is second or first.tobytes() == second.tobytes()

@@ -39,6 +39,9 @@ RESERVE = 2e-6
 ALLOWANCE = 1e-6
 """By how much (m) a solved tick may pass its floors."""
 
+Closest = tuple[int, float] | None
+"""Number of a pair, and its distance (m)."""
+
 _BENDS = 1e-4
 _NEAR_MARGIN = 0.01
 _MOST_LOOKS = 8
@@ -65,6 +68,26 @@ class TooNear:
     floor: float
 
 
+@dataclass(frozen=True)
+class Least:
+    """Distances of all pairs (K,), m: what is `kept` between them, and what those nearer than that keep, the
+    `lowest`. `reach` is that of `within`."""
+
+    kept: Array
+    lowest: Array
+    reach: Array | None
+
+    @classmethod
+    def of(cls, distances: Distances, reserve: float, at_start: Near | None) -> Least:
+        """Margins and a reserve (m); what is nearer `at_start` of a motion may stay as near as it is."""
+        kept = distances.margin + reserve
+        lowest = kept.copy()
+        if at_start is not None:
+            inside = at_start.pairs
+            lowest[inside] = np.minimum(kept[inside], at_start.distance)
+        return cls(kept, lowest, within(distances, lowest))
+
+
 class Clearance:
     """Pairs to be kept clear of each other in a motion that begins at the time `begin` (s) of the run."""
 
@@ -72,6 +95,7 @@ class Clearance:
         self.distances = distances
         self.begin = begin
         self._at_start: Near | None = None
+        self._least: dict[float, Least] = {}
         self._start: Array = np.zeros(0)
         self._start_distance: Array = np.zeros(0)
 
@@ -93,7 +117,8 @@ class Clearance:
         None where everything is far; where a step from there comes near something, `nears` tells.
         """
         if self.after(elapsed).far(q):
-            self._at_start = None if elapsed == 0.0 else self._at_start
+            if elapsed == 0.0:
+                self._begun(None)
             return None
         return self._tick(q, dt, elapsed, reserve, paced)
 
@@ -104,13 +129,16 @@ class Clearance:
     def _tick(self, q: Array, dt: float, elapsed: float, reserve: float, paced: bool) -> TickClearance:
         distances = self.after(elapsed)
         if elapsed == 0.0:
-            self._at_start = distances.near(q, distances.margin + _NEAR_MARGIN)
-        least = distances.margin + reserve
-        lowest = least.copy()
-        if self._at_start is not None:
-            inside = self._at_start.pairs
-            lowest[inside] = np.minimum(least[inside], self._at_start.distance)
-        return TickClearance(distances, q, dt, (least, lowest), self.begin + elapsed, paced)
+            self._begun(distances.near(q, distances.margin + _NEAR_MARGIN))
+        least = self._least.get(reserve)
+        if least is None:
+            least = self._least[reserve] = Least.of(distances, reserve, self._at_start)
+        return TickClearance(distances, q, dt, least, self.begin + elapsed, paced)
+
+    def _begun(self, near: Near | None) -> None:
+        """Note what a motion has near its margins as it begins."""
+        self._at_start = near
+        self._least.clear()
 
     def following_tick(self, q: Array, base: Array, dt: float) -> TickClearance:
         """The floors of the first tick of dt s, in which the plan moves the joints by `base` (n,)."""
@@ -118,7 +146,8 @@ class Clearance:
         least = self.distances.margin + RESERVE
         lowest, inside = least.copy(), self.distances.near(q, least)
         lowest[inside.pairs] = inside.distance
-        tick = TickClearance(self.distances, q, dt, (least, lowest), self.begin, before=True)
+        kept = Least(least, lowest, within(self.distances, lowest))
+        tick = TickClearance(self.distances, q, dt, kept, self.begin, before=True)
         tick.follow(base)
         return tick
 
@@ -146,6 +175,20 @@ class Clearance:
         k = int(np.argmin(room))
         return TooNear(int(near.pairs[k]), float(near.distance[k]), float(least[k]))
 
+    def closest(self, q: Array, elapsed: float) -> Closest:
+        """The pair with the least room above its margin at q (n,), `elapsed` s after the begin of the motion.
+
+        None where all are farther away than they count.
+        """
+        distances = self.after(elapsed)
+        if distances.far(q):
+            return None
+        near = distances.near(q)
+        if not len(near.pairs):
+            return None
+        k = int((near.distance - distances.margin[near.pairs]).argmin())
+        return int(near.pairs[k]), float(near.distance[k])
+
     def inside_margin(self, q: Array) -> TooNear | None:
         """The pair of posture q (n,) that is deepest inside its margin; None where none is."""
         near = self.distances.near(q, self.distances.margin)
@@ -167,12 +210,17 @@ class Clearance:
                 return row, found
         return None
 
-    def nearest(self, q: Array, start: Array) -> TooNear | None:
-        """The pair with the least room above what it must keep at q (n,), of those within their influence."""
+    def nearest(self, q: Array, start: Array, reserve: float = 0.0, elapsed: float = 0.0) -> TooNear | None:
+        """The pair with the least room above what it must keep at q (n,), of those within their influence.
+
+        That is its margin and a `reserve` (m), see `floors`; obstacles are where they are `elapsed` s after
+        the begin of the motion.
+        """
+        self.after(elapsed)
         near = self._within(q)
         if not len(near.pairs):
             return None
-        floors = self.floors(near.pairs, start)
+        floors = self.floors(near.pairs, start, reserve)
         k = int(np.argmin(near.distance - floors))
         return TooNear(int(near.pairs[k]), float(near.distance[k]), float(floors[k]))
 
@@ -207,28 +255,25 @@ class TickClearance:
         distances: Distances,
         q: Array,
         dt: float,
-        least: tuple[Array, Array],
+        least: Least,
         time: float,
         paced: bool = True,
         before: bool = False,
     ) -> None:
-        """A tick of dt s from posture q (n,) at a `time` (s) of the run.
-
-        `least` are the distances (K,) of all pairs that are kept, and those that pairs inside of these keep.
-        """
+        """A tick of dt s from posture q (n,) at a `time` (s) of the run."""
         self._distances = distances
         self._end = time + dt
         distances.at_time(time, before)
         self._q = q
         self._dt = dt
-        self._least, self._lowest = least
-        self._within = within(distances, self._lowest)
+        self._least = least
         self.near = distances.near(q)
         pairs, found = self.near.pairs, self.near.distance
         share = min(dt / APPROACH_TIME, 1.0) if paced else 1.0
-        lost = found - share * (found - least[0][pairs])
-        self.floors = np.where(found > least[0][pairs], lost, least[1][pairs])
-        self._looked_from = np.zeros_like(q)
+        kept = least.kept[pairs]
+        left = found - kept
+        self.floors = np.where(left > 0.0, found - share * left, least.lowest[pairs])
+        self._looked_from: Array | None = None
         self._gradient: Array | None = None
         self._looks = 0
 
@@ -241,7 +286,7 @@ class TickClearance:
         self._distances.at_time(self._end)
         here = self._distances.of(self._q, pairs).distance
         there = self._distances.of(self._q + base, pairs).distance
-        room = before - self._least[pairs]
+        room = before - self._least.kept[pairs]
         coming = np.maximum(before - here, 0.0)
         left = room * min(self._dt / SEEN_TIME, 1.0)
         slower = np.minimum(there + np.maximum(coming - left, 0.0), before - left)
@@ -251,10 +296,12 @@ class TickClearance:
 
     def rows(self, whole: Array) -> SideRows:
         """Rows of the Newton step at the iterate `whole` (n,), the step since the start of the tick."""
-        moved = float(np.max(np.abs(whole - self._looked_from), initial=0.0))
-        if self._gradient is None or (moved > _BENDS and self._looks < _MOST_LOOKS):
-            self._look(whole)
-        assert self._gradient is not None
+        if self._gradient is None or self._looked_from is None:
+            self._gradient, self._looked_from = self._look(whole)
+        elif self._looks < _MOST_LOOKS:
+            moved = float(np.max(np.abs(whole - self._looked_from), initial=0.0))
+            if moved > _BENDS:
+                self._gradient, self._looked_from = self._look(whole)
         since = whole - self._looked_from
         return SideRows(self._gradient, self.floors - self.near.distance - self._gradient @ since)
 
@@ -265,10 +312,10 @@ class TickClearance:
         """
         distances = self._distances
         distances.at_time(self._end)
-        there = distances.near(self._q + whole, self._within)
+        there = distances.near(self._q + whole, self._least.reach)
         if not len(there.pairs):
             return True
-        floor = self._lowest.copy()
+        floor = self._least.lowest.copy()
         floor[self.near.pairs] = self.floors
         short = there.distance < floor[there.pairs] - ALLOWANCE
         if not np.count_nonzero(short):
@@ -286,16 +333,16 @@ class TickClearance:
         """
         if not len(self.near.pairs):
             return True
-        self._look(whole)
-        assert self._gradient is not None
-        loss = self._gradient @ further
-        left = self.near.distance + loss - self._least[self.near.pairs]
+        gradient, self._looked_from = self._look(whole)
+        self._gradient = gradient
+        loss = gradient @ further
+        left = self.near.distance + loss - self._least.kept[self.near.pairs]
         return bool(np.all((left >= -ALLOWANCE) | (loss >= 0.0)))
 
     def at_margins(self) -> TickClearance:
         """The same tick where all may come as near as their margins at once, or stay as near as they are."""
         found = self.again()
-        found.floors = np.minimum(found.floors, self._least[self.near.pairs])
+        found.floors = np.minimum(found.floors, self._least.kept[self.near.pairs])
         return found
 
     def again(self) -> TickClearance:
@@ -305,8 +352,9 @@ class TickClearance:
     def without(self, pairs: Numbers) -> TickClearance:
         """The same tick in which these pairs (by number) may come as near as they like."""
         found = copy(self)
-        found._least, found._lowest = self._least.copy(), self._lowest.copy()
-        found._least[pairs] = found._lowest[pairs] = -np.inf
+        kept, lowest = self._least.kept.copy(), self._least.lowest.copy()
+        kept[pairs] = lowest[pairs] = -np.inf
+        found._least = Least(kept, lowest, self._least.reach)
         stay = ~np.isin(self.near.pairs, pairs)
         found.near, found.floors = self.near.chosen(stay), self.floors[stay]
         found._gradient, found._looks = None, 0
@@ -317,11 +365,11 @@ class TickClearance:
         """Whether looking again has not helped."""
         return self._looks >= _MOST_LOOKS
 
-    def _look(self, whole: Array) -> None:
+    def _look(self, whole: Array) -> tuple[Array, Array]:
+        """Distances at an iterate; how they grow with the joints (P, n), and the iterate."""
         distances = self._distances
         distances.at_time(self._end)
         q = self._q + whole
         self.near = distances.of(q, self.near.pairs)
-        self._gradient = distances.rates(q, self.near)
-        self._looked_from = whole.copy()
         self._looks += 1
+        return distances.rates(q, self.near), whole.copy()

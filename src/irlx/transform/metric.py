@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
+from scipy.linalg.lapack import dposv
 
 Array = NDArray[np.float64]
 
@@ -17,6 +20,19 @@ def times(hessian: Array, d: Array) -> Array:
 def solved(hessian: Array, g: Array) -> Array:
     """H^-1 g, shape (n,)."""
     return g / hessian if hessian.ndim == 1 else np.asarray(np.linalg.solve(hessian, g))
+
+
+def inverse(hessian: Array) -> Array:
+    """H^-1, a diagonal (n,) or whole (n, n)."""
+    if hessian.ndim == 1:
+        return 1.0 / hessian
+    _, found, failed = dposv(hessian, _identity(len(hessian)))
+    return np.asarray(np.linalg.inv(hessian) if failed else found)
+
+
+@cache
+def _identity(size: int) -> Array:
+    return np.eye(size)
 
 
 def rows_over(rows: Array, hessian: Array) -> Array:

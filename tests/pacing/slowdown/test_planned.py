@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from irlx.motion.trapezoid import Trapezoid
-from irlx.pacing.slowdown import ladder
+from irlx.pacing.slowdown import ladder, planned
 from irlx.pacing.slowdown.clock_bounds import Governor, Reserves, clock_bounds
 from irlx.pacing.slowdown.planned import PlannedMotion, Refusal, plan_motion
+from irlx.transform.clearance import TooNear
 from machines import machine
 from slow_cases import SPEEDS, WAYS, jacobian_at, slow_limits, used
 from stream_judge import excess
@@ -38,6 +39,21 @@ def assert_promised(name: str, limits, found: PlannedMotion, dt: float) -> None:
     assert s[-1] == path.length
     assert len(s) * dt >= law.duration - 1e-6 * dt
     assert np.max(np.abs(np.diff(s, prepend=0.0)) / dt) <= law.speed * (1.0 + 1e-9)
+
+
+def test_what_came_too_near_with_the_least_reserve_is_the_reason(monkeypatch) -> None:
+    """Wider reserves may be refused for what they keep themselves: that is no reason to tell."""
+    reserves = []
+    near = TooNear(3, 0.0199, 0.02)
+
+    def refused(model, task, grid, bounds, reserve):
+        reserves.append(reserve)
+        return Refusal(0.1, near=near) if len(reserves) < 3 else Refusal(0.2, reserve=reserve)
+
+    monkeypatch.setattr(planned, "_with_reserve", refused)
+    found = plan("arm7", slow_limits("arm7", 0.5), 0.01)
+    assert found == Refusal(0.1, near=near)
+    np.testing.assert_allclose(reserves, [1e-4, 4e-4, 1.6e-3])
 
 
 @pytest.mark.parametrize(

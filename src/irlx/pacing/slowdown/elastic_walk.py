@@ -46,12 +46,14 @@ _LEAD_BACK = 12.0
 class Passage:
     """Postures q (N + 1, n) of the knots and the stretch (N,) of each interval's bounds.
 
-    `stopped` is None, or the interval that no step crosses and how it ended there.
+    `stopped` is None, or the interval that no step crosses and how it ended there, which would have been
+    `elapsed` s after the begin of the motion.
     """
 
     q: Array
     stretch: Array
     stopped: tuple[int, TickSolution] | None = None
+    elapsed: float = 0.0
 
 
 def elastic_walk(
@@ -95,7 +97,7 @@ def elastic_walk(
         if found is None:
             last = solver.solve(problem._replace(bounds=room.positions()))
             if not last.solved:
-                return Passage(q[: i + 1], stretch[:i], (i, last))
+                return Passage(q[: i + 1], stretch[:i], (i, last), elapsed + room.duration)
             found = last.q - q[i], room.stretch_of(last.q - q[i])
         q[i + 1] = rounded_inside(q[i] + found[0], model.limits)
         stretch[i] = found[1]

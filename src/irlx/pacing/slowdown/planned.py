@@ -63,8 +63,8 @@ class Refusal:
 
     `solution` holds the failed step of the walk. Else the clock of `timed` stands at `knot`, for the bound
     it names. Else only the differences of the rows say no: `broken`, its row counted from the start of
-    the motion. Or something comes too `near`, in a
-    `row` from the start of the motion.
+    the motion. Or something comes too `near`, in a `row` from the start of the motion. `reserve` (m) is what
+    the walk kept beside margins, and `elapsed` the time (s) from the start at which its step failed.
     """
 
     s: float
@@ -74,6 +74,8 @@ class Refusal:
     broken: BrokenBound | None = None
     near: TooNear | None = None
     row: int = 0
+    reserve: float = 0.0
+    elapsed: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -124,17 +126,24 @@ def plan_motion(model: Model, task: MotionTask) -> PlannedMotion | Refusal:
 
 
 def _planned(model: Model, task: MotionTask) -> PlannedMotion | Refusal:
-    """The motion with the joints that are free, its reserve widened where rows pass a position limit."""
+    """The motion with the joints that are free, its reserve widened where rows pass a limit or margin.
+
+    What came too near with the least reserve is the reason why there is none.
+    """
     grid = path_grid(task.path, task.law, task.ticking.resolution.spacing)
     reserve = RESERVE
     found: PlannedMotion | Refusal = Refusal(0.0)
+    first: Refusal | None = None
     for _ in range(_RESERVES):
         bounds = reserved(model.limits, grid.intervals + 1, reserve)
         found = _with_reserve(model, task, grid, bounds, reserve)
-        if not isinstance(found, Refusal) or (found.broken is None and found.near is None):
+        if not isinstance(found, Refusal):
+            return found
+        if found.broken is None and found.near is None:
             break
+        first = found if first is None and found.near is not None else first
         reserve *= _RESERVE_GROWTH
-    return found
+    return found if first is None else first
 
 
 def _with_reserve(
@@ -143,7 +152,8 @@ def _with_reserve(
     passage = elastic_walk(model, grid, task.start, task.criterion_of, bounds, reserve)
     if passage.stopped is not None:
         interval, solution = passage.stopped
-        return Refusal(float(grid.s[interval + 1]), solution=solution)
+        place = float(grid.s[interval + 1])
+        return Refusal(place, solution=solution, reserve=reserve, elapsed=passage.elapsed)
     q = passage.q
     # Knots are close: the one next to a place stands for it.
     through = tuple(grid.inner_knot(place) for place in task.through)

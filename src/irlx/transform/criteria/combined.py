@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import prod
 
 import numpy as np
 
 from irlx.transform.criteria.criterion import Array, Criterion
 from irlx.transform.criteria.term import Term
-from irlx.transform.metric import times
+from irlx.transform.metric import inverse, times
 
 
 @dataclass(frozen=True)
@@ -28,25 +27,35 @@ class Combined(Criterion):
     """
 
     def __init__(self, base: Criterion, terms: tuple[Weighted, ...], elapsed: float) -> None:
-        self.name = " + ".join([base.name, *(entry.term.name for entry in terms)])
         self._base = base
         self._terms = terms
         self._elapsed = elapsed
 
+    @property
+    def name(self) -> str:  # type: ignore[override]
+        """Names of all terms."""
+        return " + ".join([self._base.name, *(entry.term.name for entry in self._terms)])
+
     def begun(self, q: Array) -> Criterion:
         """The same with b and B of a posture."""
-        terms = [entry for entry in self._terms if entry.term.acts(q)]
-        if not terms:
-            return self._base.begun(q)
-        linear = np.zeros(q.size)
-        share = prod(entry.term.posture_share(q) for entry in terms)
-        hessian = share * self._base.hessian()
-        for entry in terms:
-            linear = linear + entry.weight * entry.term.linear(q, self._elapsed)
-            added = entry.term.quadratic(q)
-            if added is not None:
-                hessian = _sum(hessian, entry.weight * added)
-        return _Begun(self.name, self._base, share, linear, hessian)
+        for entry in self._terms:
+            if entry.term.acts(q):
+                return self._begun(q)
+        return self._base.begun(q)
+
+    def _begun(self, q: Array) -> _Begun:
+        linear, share = np.zeros(q.size), 1.0
+        added: Array | None = None
+        for entry in self._terms:
+            term, weight = entry.term, entry.weight
+            if not term.acts(q):
+                continue
+            share *= term.posture_share(q)
+            linear += weight * term.linear(q, self._elapsed)
+            more = term.quadratic(q)
+            if more is not None:
+                added = weight * more if added is None else _sum(added, weight * more)
+        return _Begun(self, self._base, share, linear, np.zeros(q.size) if added is None else added)
 
     def value(self, q: Array, step: Array) -> float:
         """phi at a step."""
@@ -68,30 +77,46 @@ class _Begun(Criterion):
     criterion against something else, as slowing down does, is not put off by large terms.
     """
 
-    def __init__(self, name: str, base: Criterion, share: float, linear: Array, hessian: Array) -> None:
-        self.name = name
+    def __init__(self, whole: Combined, base: Criterion, share: float, linear: Array, added: Array) -> None:
+        self._whole = whole
         self._base = base
-        self._share = share
         own = base.hessian()
+        hessian = _sum(share * own, added)
         size = float((hessian if hessian.ndim == 1 else hessian.diagonal()).sum())
-        self._scale = float(own.sum()) / size
-        self._linear = linear
-        self._added = _sum(hessian, -share * own)
-        self._hessian = self._scale * hessian
+        scale = float(own.sum()) / size
+        self._share = scale * share
+        self._linear = scale * linear
+        self._added = scale * added
+        self._hessian = scale * hessian
+        self._inverse: Array | None = None
+
+    @property
+    def name(self) -> str:  # type: ignore[override]
+        """Names of all terms."""
+        return self._whole.name
 
     def value(self, q: Array, step: Array) -> float:
         """phi at a step, scaled."""
         added = float(self._linear @ step + 0.5 * step @ times(self._added, step))
-        return self._scale * (self._share * self._base.value(q, step) + added)
+        return self._share * self._base.value(q, step) + added
 
     def gradient(self, q: Array, step: Array) -> Array:
         """Its derivative by the step."""
-        whole = self._share * self._base.gradient(q, step) + self._linear + times(self._added, step)
-        return self._scale * whole
+        return self._share * self._base.gradient(q, step) + self._linear + times(self._added, step)
 
     def hessian(self) -> Array:
         """Its second derivative."""
         return self._hessian
+
+    def pull(self, q: Array, step: Array) -> Array:
+        """-H^-1 g."""
+        return -times(self.inverse_hessian(), self.gradient(q, step))
+
+    def inverse_hessian(self) -> Array:
+        """H^-1, computed once."""
+        if self._inverse is None:
+            self._inverse = inverse(self._hessian)
+        return self._inverse
 
 
 def _sum(first: Array, second: Array) -> Array:

@@ -7,7 +7,7 @@ from abc import ABC, abstractmethod
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.transform.metric import solved
+from irlx.transform.metric import inverse, solved
 
 Array = NDArray[np.float64]
 
@@ -44,5 +44,4 @@ class Criterion(ABC):
 
     def inverse_hessian(self) -> Array:
         """H^-1, as a diagonal (n,) or whole (n, n)."""
-        hessian = self.hessian()
-        return 1.0 / hessian if hessian.ndim == 1 else np.asarray(np.linalg.inv(hessian))
+        return inverse(self.hessian())
