@@ -18,7 +18,6 @@ import re
 import shutil
 import tempfile
 from collections.abc import Iterator
-from contextlib import suppress
 from pathlib import Path
 from statistics import geometric_mean, median
 from time import process_time
@@ -136,16 +135,18 @@ def written(folder: Path) -> Iterator[Path]:
 
 
 def copied(program: Path, folder: Path) -> Path:
-    """A program in a folder, with its cell and data lists beside it."""
+    """A program in a folder, with a cell of its own and its data lists beside it."""
     folder.mkdir(exist_ok=True)
     for beside in program.parent.glob("*.dat"):
         shutil.copy(beside, folder)
-    cell = program.with_suffix(".toml")
-    if not cell.exists():
-        cell = program.parent / "square.toml"
-    with suppress(shutil.SameFileError):
-        shutil.copy(cell, folder / f"{program.stem}.toml")
-    return Path(shutil.copy(program, folder))
+    text = program.read_text()
+    named = re.search(r"SYSTEM SPECIFICATION (\w+);", text)
+    cell = program.with_suffix(".toml") if named is None else program.with_name(f"{named[1]}.toml")
+    shutil.copy(cell, folder / f"{program.stem}.toml")
+    there = folder / program.name
+    # The cell that a program names would come first.
+    there.write_text(text if named is None else text.replace(named[0], "", 1))
+    return there
 
 
 def drawn() -> dict[str, str]:

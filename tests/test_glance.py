@@ -12,7 +12,8 @@ import irlx
 from irlx.dry_run import _DryExecution, resolution_of
 from irlx.job import prepare
 from irlx.pacing import path_motion
-from irlx.pacing.glance import NODES, Glanced, _barycentric, _Pieces, glance
+from irlx.pacing.glance import NODES, Glanced, Undisturbed, _barycentric, glance
+from irlx.pacing.path_motion import PacedPath
 from irlx.pipeline import Execution
 from irlx.robot.kinematics import Kinematics
 from irlx.transform.tick import TickSolver
@@ -89,7 +90,7 @@ def test_a_motion_near_a_limit_is_none_of_its_business(tmp_path, monkeypatch) ->
     seen = []
     own = path_motion._glanced
     monkeypatch.setattr(
-        path_motion, "_glanced", lambda *asked: seen.append(own(*asked) is not None) or own(*asked)
+        path_motion, "_glanced", lambda *asked: seen.append(isinstance(own(*asked), PacedPath)) or own(*asked)
     )
     for share, sure in ((1.05, True), (1.01, False), (0.9, False)):
         speeds = ", ".join(f"{share * value:.9f}" for value in fastest)
@@ -103,6 +104,27 @@ def test_a_motion_near_a_limit_is_none_of_its_business(tmp_path, monkeypatch) ->
         assert all(seen) == sure, share
 
 
+def test_links_that_come_too_near_are_none_of_its_business(tmp_path, monkeypatch) -> None:
+    """The margin just below and just above what the run comes down to at the end of the second line."""
+    body = "MOVE LIN (441, 200, 324); MOVE LIN (300, 150, 250) SPEED := 100;"
+    wide = "[robot.self_collision]\nmargin = 5\ninfluence = 200\n"
+    prepared(tmp_path, body, wide)
+    smallest = 1e3 * irlx.run(tmp_path / "g.irl").clearances.distance.min()
+    seen = []
+    own = path_motion._glanced
+    monkeypatch.setattr(
+        path_motion, "_glanced", lambda *asked: seen.append(isinstance(own(*asked), PacedPath)) or own(*asked)
+    )
+    for over, sure in ((-1.0, True), (1.0, False)):
+        limits = f"[robot.self_collision]\nmargin = {smallest + over:.6f}\ninfluence = 200\n"
+        job = prepared(tmp_path, body, limits)
+        seen.clear()
+        execution = dry(job)
+        list(execution)
+        assert seen[0]
+        assert seen[1] == sure, over
+
+
 def test_polynomials_between_nodes_are_exact() -> None:
     rng = np.random.default_rng(3)
     angles = np.pi * np.arange(NODES) / (NODES - 1)
@@ -112,7 +134,7 @@ def test_polynomials_between_nodes_are_exact() -> None:
         chebyshev = np.polynomial.Chebyshev.basis(degree, [0.0, 1.0])
         assert np.allclose(_barycentric(x) @ chebyshev(at), chebyshev(x), atol=1e-12)
         values = chebyshev(at)[None, :, None]
-        tail = _Pieces(np.array([0.0, 1.0]), values, at, None).tails
+        tail = Undisturbed(np.array([0.0, 1.0]), values, at, None).tails
         assert tail == pytest.approx([1.0 if degree >= NODES - 2 else 0.0], abs=1e-12)
 
 

@@ -208,3 +208,50 @@ def brute(arm, obstacles, seen, q, time):
         still.append(Obstacle(one.name, one.solids, place, one.margin, one.influence, way))
     fresh = Distances(arm, watched_pairs(arm, still, None))
     return fresh.of(q, np.arange(len(fresh.pairs))).distance
+
+
+@pytest.mark.parametrize("name", ["arm7", "koch11", "rail6"])
+def test_pairs_lose_no_more_than_their_levers_say(name):
+    """Among them pairs of links that the first joints carry both."""
+    rng = np.random.default_rng(8)
+    arm = robot(name, {"arm7": "tool", "koch11": "tcp"}.get(name))
+    links = tuple(arm.description.solids)
+    watched = LinkClearance(tuple((a, b) for k, a in enumerate(links) for b in links[k + 2 :]), 0.01, 0.1)
+    found = Distances(arm, watched_pairs(arm, scene(rng, 7), watched))
+    every = np.arange(len(found.pairs))
+    for _ in range(40):
+        before = rng.uniform(-1.0, 1.0, arm.joints)
+        after = before + rng.choice([1e-3, 0.05, 0.5]) * rng.normal(size=arm.joints) * (
+            rng.random(arm.joints) < 0.5
+        )
+        first, second = (found.of(q, every).distance for q in (before, after))
+        # Depths are not distances.
+        apart = (first > 0.0) & (second > 0.0)
+        lost = (first - second)[apart]
+        assert np.all(lost <= found._levers.moved(before, after)[apart] + 1e-7)
+    both = found._levers.moved(np.zeros((2, arm.joints)), rng.normal(size=(2, arm.joints)))
+    assert both.shape == (2, len(every))
+
+
+@pytest.mark.parametrize("name", ["arm7", "koch11"])
+def test_what_is_surely_clear_is_clear(name):
+    """Rows ahead, and those between two looks, against a look at each of them."""
+    rng = np.random.default_rng(11)
+    arm = robot(name, {"arm7": "tool", "koch11": "tcp"}.get(name))
+    pairs = watched_pairs(arm, scene(rng, 21), None)
+    kept, fresh = Distances(arm, pairs), Distances(arm, pairs)
+    every, sure = np.arange(len(pairs)), 0
+    for _ in range(60):
+        start, way = rng.uniform(-1.0, 1.0, (2, arm.joints))
+        q = start + np.linspace(0.0, rng.choice([1e-3, 0.02, 0.2]), 9)[:, None] * way
+        within = rng.choice([0.0, 0.02, 0.3]) * np.ones(len(pairs))
+        kept.near(q[0], within)
+        before = kept.known
+        ahead = kept.clear_rows(q[1:], within)
+        kept.near(q[2], within)
+        between = kept.surely_clear(q[1], before, within)
+        near = [bool(np.any(fresh.of(row, every).distance < within - 1e-7)) for row in q]
+        assert not any(near[1 : 1 + ahead])
+        assert not (between and near[1])
+        sure += ahead > 0 or between
+    assert sure > 10

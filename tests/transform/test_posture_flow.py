@@ -270,3 +270,16 @@ def test_an_elbow_on_its_limit_holds_nobody(arm7, side):
     assert np.max(np.abs(flow.remaining)) <= 1e-6
     assert np.all((flow.points >= lower) & (flow.points <= upper))
     assert pose_errors(arm7, arm7.q, flow.points).max() <= ON_POSE
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_coarse_flow_is_the_same_but_for_the_last_digits(arm, seed):
+    print("seed", seed)
+    rng = np.random.default_rng(seed)
+    q, free = drawn(arm, rng, 0.5), rng.random(arm.n) < 0.9
+    arguments = (arm.kinematics, q, drawn(arm, rng, 0.5), arm.weights, limits_of(arm), free, DualSolver())
+    fine, coarse = posture_flow(*arguments), posture_flow(*arguments, True)
+    assert coarse.end is fine.end
+    assert coarse.points.shape == fine.points.shape
+    np.testing.assert_allclose(coarse.points, fine.points, atol=2e-6)
+    assert pose_errors(arm, q, coarse.points).max() <= ON_POSE

@@ -18,6 +18,7 @@ from irlx.transform.criteria.combined import Combined, Weighted
 from irlx.transform.criteria.keeping_clear import KeepingClear
 from irlx.transform.criteria.posture import Posture
 from irlx.transform.step_bounds import BoundSource, StepBounds
+from irlx.transform.tick import TickSolver
 from irlx.transform.tick_problem import TickProblem
 
 Array = NDArray[np.float64]
@@ -56,10 +57,12 @@ def _rest_point(situation: Situation, clearance: Clearance, start: Array, limits
     target = kinematics.target(*kinematics.tool_pose(start))
     term = Weighted(KeepingClear(clearance.distances, situation.free), 1.0)
     criterion = Combined(Posture(situation.setup.weights, start), (term,), _TICK)
+    # A program may ask for it in a dry run: it gets the same values.
+    solver = TickSolver(kinematics, situation.qp)
     for _ in range(_MOST_TICKS):
         keeping = clearance.tick(q, _TICK)
         problem = TickProblem(target, q, _room(q, limits), criterion, situation.free, keeping)
-        found = situation.solver.solve(problem, thorough=False)
+        found = solver.solve(problem, thorough=False)
         if not found.solved:
             break
         moved = float(np.max(np.abs(found.q - q)))

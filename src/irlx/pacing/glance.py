@@ -23,11 +23,9 @@ from irlx.motion.pose_path import PosePath, Poses
 from irlx.motion.time_law import TimeLaw
 from irlx.pacing.demand import Demand
 from irlx.pacing.posture_term import PostureTerm
+from irlx.pacing.slowdown.all_at_once import LONGEST, references, settle
 from irlx.pacing.slowdown.model import Model
 from irlx.robot.limits import JointLimits
-from irlx.transform.criteria.criterion import Criterion
-from irlx.transform.criteria.least_motion import LeastMotion
-from irlx.transform.criteria.posture import Posture
 
 Array = NDArray[np.float64]
 
@@ -49,10 +47,6 @@ MOST_TAIL = 3e-4
 MOST_TICKS = 50_000
 ROW_STEP = 0.12
 """Largest way of a joint (rad or m) from row to row: what a posture near a singular one is found by."""
-
-_LONGEST = 0.5
-_ROUNDS = 8
-_SETTLED = 1e-5
 
 
 @dataclass(frozen=True)
@@ -76,8 +70,9 @@ class Glanced:
     first_tick: int
 
 
-def glance(motion: Glanced, model: Model) -> Glance | None:
-    """Rows of a motion that surely keeps away from all limits; None where that is not sure."""
+def glance(motion: Glanced, model: Model) -> Glance | Undisturbed | None:
+    """Rows of a motion that surely keeps away from all limits; else what it would be without any, where that
+    is smooth."""
     if model.freedom < 0 or motion.ticks > MOST_TICKS:
         return None
     breaks = _breaks(motion.path)
@@ -87,9 +82,16 @@ def glance(motion: Glanced, model: Model) -> Glance | None:
             return None
         rough = curve.tails > MOST_TAIL
         if not np.any(rough):
-            return _rows(motion, model, curve) if _is_inside(motion, model.limits, curve) else None
+            return _seen(motion, model, curve)
         breaks = _cut(breaks, rough)
     return None
+
+
+def _seen(motion: Glanced, model: Model, curve: Undisturbed) -> Glance | Undisturbed:
+    if not _is_inside(motion, model.limits, curve):
+        return curve
+    found = _rows(motion, model, curve)
+    return found if _is_clear(motion, model, found) else curve
 
 
 def _breaks(path: PosePath) -> Array:
@@ -110,8 +112,10 @@ def _cut(breaks: Array, chosen: NDArray[np.bool_]) -> Array:
 
 
 @dataclass(frozen=True)
-class _Pieces:
-    """Polynomials q(s) between each two of `breaks` (S + 1,), by their `values` (S, NODES, n) at the nodes.
+class Undisturbed:
+    """Postures over the path as they would be without bounds.
+
+    Polynomials q(s) between each two of `breaks` (S + 1,), by their `values` (S, NODES, n) at the nodes.
 
     `nodes` (N + 1,) are the path parameters of all of them, with their `poses`.
     """
@@ -160,30 +164,22 @@ def _barycentric(x: Array) -> Array:
     return np.asarray(weights / np.sum(weights, axis=1, keepdims=True))
 
 
-def _curve(motion: Glanced, model: Model, breaks: Array) -> _Pieces | None:
+def _curve(motion: Glanced, model: Model, breaks: Array) -> Undisturbed | None:
     """Postures over the path; None where they are not found at once."""
     nodes = np.append((breaks[:-1, None] + np.diff(breaks)[:, None] * _AT[:-1]).ravel(), breaks[-1])
     criteria = [
         motion.term.at(float(s), float(way)) for s, way in zip(nodes[1:], np.diff(nodes), strict=True)
     ]
-    drawn = _references(criteria)
+    drawn = references(criteria)
     if drawn is None:
         return None
     poses = motion.path.poses(nodes)
     targets = model.targets(poses)
     q = _predicted(model, motion.start, targets, drawn)
-    if q is None or not _settle(model, q, targets, drawn):
+    if q is None or not settle(model, q, targets, drawn):
         return None
     number = np.arange(len(breaks) - 1)[:, None] * (NODES - 1) + np.arange(NODES)
-    return _Pieces(breaks, q[number], nodes, poses)
-
-
-def _references(criteria: list[Criterion]) -> Array | None:
-    """Postures (N, n) that a motion is drawn to; of no length for least motion; None for other criteria."""
-    if all(type(one) is LeastMotion for one in criteria):
-        return np.empty((0, 0))
-    found = [one.reference for one in criteria if type(one) is Posture]
-    return np.array(found) if len(found) == len(criteria) else None
+    return Undisturbed(breaks, q[number], nodes, poses)
 
 
 def _predicted(model: Model, start: Array, targets: list[pin.SE3], drawn: Array) -> Array | None:
@@ -198,52 +194,13 @@ def _predicted(model: Model, start: Array, targets: list[pin.SE3], drawn: Array)
         pull = free * (drawn[k - 1] - here) if len(drawn) else 0.0 * here
         _, multipliers, failed = dposv(scaled.dot(jacobian.T), twist - jacobian.dot(pull))
         step = pull + multipliers.dot(scaled)
-        if failed or not step.dot(step) <= _LONGEST**2 * start.size:
+        if failed or not step.dot(step) <= LONGEST**2 * start.size:
             return None
         q[k] = here = here + step
     return q
 
 
-def _settle(model: Model, q: Array, targets: list[pin.SE3], drawn: Array) -> bool:
-    """Bring postures (N + 1, n), but the first, onto their poses and to what the criterion wants there.
-
-    For least motion: each step has no part in the null space, the mean of those at both its ends.
-    """
-    free = model.free
-    inverse, unit = 1.0 / model.weights[free], np.eye(int(np.count_nonzero(free)))
-    change = np.inf
-    for _ in range(_ROUNDS):
-        twists, jacobians = model.differences(q, targets)
-        scaled = jacobians * inverse
-        gram = scaled @ np.swapaxes(jacobians, 1, 2)
-        try:
-            back = np.swapaxes(np.linalg.solve(gram, scaled), 1, 2)
-        except np.linalg.LinAlgError:
-            return False
-        null = unit - back @ jacobians
-        onto = (back @ twists[:, :, None])[:, :, 0]
-        if len(drawn):
-            step = onto[1:] + _times(null[1:], drawn[:, free] - q[1:, free])
-        else:
-            ways = np.diff(q[:, free], axis=0)
-            step = onto[1:] - 0.5 * _times(null[1:], ways + _times(null[:-1], ways))
-            for k in range(1, len(step)):
-                step[k] += null[k + 1].dot(step[k - 1])
-        before, change = change, float(np.max(np.abs(step)))
-        if not change < min(before, _LONGEST):
-            return False
-        q[1:, free] += step
-        if change <= _SETTLED:
-            return True
-    return False
-
-
-def _times(matrices: Array, vectors: Array) -> Array:
-    """The products of matrices (N, a, b) with vectors (N, b)."""
-    return np.asarray((matrices @ vectors[:, :, None])[:, :, 0])
-
-
-def _is_inside(motion: Glanced, limits: JointLimits, curve: _Pieces) -> bool:
+def _is_inside(motion: Glanced, limits: JointLimits, curve: Undisturbed) -> bool:
     """Whether the ticks of a motion keep well away from all limits, by the differences of a run."""
     dt = motion.dt
     s, _ = motion.law.evaluate(dt * np.arange(1.0, motion.ticks + 1.0))
@@ -260,11 +217,19 @@ def _is_inside(motion: Glanced, limits: JointLimits, curve: _Pieces) -> bool:
     )
 
 
+def _is_clear(motion: Glanced, model: Model, found: Glance) -> bool:
+    """Whether the rows come too near to nothing."""
+    if model.clearance is None:
+        return True
+    ticks = np.array([demand.tick for demand in found.demands]) - motion.first_tick + 1
+    return model.clearance.first_short(found.q, motion.start, motion.dt * ticks) is None
+
+
 def _within(values: Array, lower: Array, upper: Array, share: float) -> bool:
     return bool(np.all(values.max(axis=0) <= share * upper) and np.all(values.min(axis=0) >= share * lower))
 
 
-def _rows(motion: Glanced, model: Model, curve: _Pieces) -> Glance:
+def _rows(motion: Glanced, model: Model, curve: Undisturbed) -> Glance:
     """Rows at the nodes, and more between them where the joints go far from one to the next."""
     nodes, values = curve.nodes, curve.values
     counts = np.ceil(np.max(np.abs(np.diff(values, axis=1)), axis=2).ravel() / ROW_STEP).astype(int)

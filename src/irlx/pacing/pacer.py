@@ -63,6 +63,7 @@ from irlx.pacing.too_near import check_rows, passed_by, standing
 from irlx.pacing.waiting import waited
 from irlx.transform.clearance import Clearance
 from irlx.transform.qp.proxqp import ProxQpSolver
+from irlx.transform.rough_tick import RoughTickSolver
 from irlx.transform.tick import TickSolver
 
 Array = NDArray[np.float64]
@@ -76,7 +77,7 @@ class Pacer:
         self._robot = setup.kinematics.description
         self.locate = locate
         self.qp = ProxQpSolver()
-        self._solver = TickSolver(setup.kinematics, self.qp)
+        self._solver = self._new_solver()
         self.q = setup.start
         self.tick = 0
         self.options = Options()
@@ -87,6 +88,11 @@ class Pacer:
         self._links_checked = False
         self._clearance = kept_clear(setup.kinematics, setup.scene, self.options)
         self._rest: MoveBlock | None = None
+
+    def _new_solver(self) -> TickSolver:
+        """What solves the ticks: roughly in a dry run."""
+        solver = RoughTickSolver if self._setup.resolution.is_coarse else TickSolver
+        return solver(self._setup.kinematics, self.qp)
 
     def answer(self, question: MachineQuestion) -> tuple[float, ...]:
         """Answer to a question of the interpreter, all blocks before it executed.
@@ -268,7 +274,7 @@ class Pacer:
             pairs_of(block.name, self.setup.kinematics, self.setup.scene, place)
         if isinstance(block, ToolBlock | WeightsBlock):
             self._setup = refitted(self._setup, block, place)
-            self._solver = TickSolver(self._setup.kinematics, self.qp)
+            self._solver = self._new_solver()
         if isinstance(block, SwitchBlock):
             self.options = self.options.after(block, self.q)
         if isinstance(block, ToolBlock | ObstacleBlock):
@@ -315,7 +321,11 @@ class Pacer:
             return None
         dt = self.setup.dt * rows.ticks / len(rows)
         clear = self._clear_from_now
-        nearest = nearest_rows(clear, rows.q, dt) if rows.nearest is None else rows.nearest
+        # Nobody is told of the rows of a dry run.
+        if self.setup.resolution.is_coarse:
+            nearest = None
+        else:
+            nearest = nearest_rows(clear, rows.q, dt) if rows.nearest is None else rows.nearest
         place = self.locate(rows.block.origin)
         if rows.stops:
             self.warnings += passed_by(clear, rows.q, (rows.first_tick, dt), place)

@@ -107,16 +107,18 @@ def _paced_or_otherwise(motion: PathMotion, model: Model, solver: TickSolver) ->
 
 
 def _paced(motion: PathMotion, model: Model, solver: TickSolver) -> PacedPath | Failure:
+    undisturbed = None
     if motion.resolution.is_coarse:
         seen = _glanced(motion, model)
-        if seen is not None:
+        if isinstance(seen, PacedPath):
             return seen
+        undisturbed = seen
     walked, broken = _walked(motion, model, solver, thorough=False)
     kept = walked.halt is None and broken is None
     if kept and not (motion.term.draws and _lags(walked.active)):
         return _as_walked(motion, walked)
     try:
-        found = plan_motion(model, _task(motion))
+        found = plan_motion(model, _task(motion, undisturbed))
     except IrlxError:
         # Too slow for the caller, or too many ticks: a walk that keeps everything still serves.
         if kept:
@@ -132,18 +134,19 @@ def _paced(motion: PathMotion, model: Model, solver: TickSolver) -> PacedPath | 
     return Failure(walked.halt, broken, found)
 
 
-def _glanced(motion: PathMotion, model: Model) -> PacedPath | None:
-    """A few rows of a motion that surely keeps away from all limits, None of any other."""
+def _glanced(motion: PathMotion, model: Model) -> PacedPath | Callable[[Array], Array] | None:
+    """A few rows of a motion that surely keeps away from all limits; of any other its postures (M, n) at path
+    parameters (M,) without them, or None."""
     # Imported here: only a dry run has a use for it.
-    from irlx.pacing.glance import Glanced, glance
+    from irlx.pacing.glance import Glance, Glanced, glance
 
     plan = motion.plan
     if motion.modifiers:
         return None
     asked = Glanced(plan.path, plan.law, plan.ticks, motion.start, motion.term, motion.dt, motion.first_tick)
     seen = glance(asked, model)
-    if seen is None:
-        return None
+    if not isinstance(seen, Glance):
+        return None if seen is None else seen.at
     return PacedPath(seen.q, np.zeros(seen.q.shape, dtype=np.int8), seen.demands, 0, motion.term)
 
 
@@ -177,7 +180,7 @@ def _as_walked(motion: PathMotion, walked: Walk) -> PacedPath:
     return PacedPath(walked.q, walked.active, walked.demands, walked.iterations, motion.term, closest=closest)
 
 
-def _task(motion: PathMotion) -> MotionTask:
+def _task(motion: PathMotion, undisturbed: Callable[[Array], Array] | None) -> MotionTask:
     return MotionTask(
         motion.plan.path,
         motion.plan.programmed,
@@ -187,6 +190,7 @@ def _task(motion: PathMotion) -> MotionTask:
         Ticking(motion.dt, motion.ticks_of, motion.demands_of, motion.resolution),
         motion.term.draws,
         motion.term.through,
+        undisturbed,
     )
 
 

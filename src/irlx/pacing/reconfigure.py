@@ -68,7 +68,7 @@ def reconfigured(
     limits = working_limits(model, block)
     free = model.free & (_either_way(limits, "speed") > 0.0) & (_either_way(limits, "acceleration") > 0.0)
     mobile = replace(model, limits=limits, free=free)
-    flow = posture_flow(model.kinematics, q, konf, model.weights, limits, free, qp)
+    flow = posture_flow(model.kinematics, q, konf, model.weights, limits, free, qp, resolution.is_coarse)
     if float(np.sum(np.abs(np.diff(flow.points, axis=0)))) <= _NO_WAY:
         return Reconfigured(flow, None, ~free)
     found = _planned(mobile, flow, _ticking(mobile, q, dt, place, resolution), first_tick, place)

@@ -125,8 +125,11 @@ def _solved(
         return solution, clearance is not None
     if not clearance.nears(solution.q, span[0] + span[1]):
         return solution, False
-    watched = problem._replace(clearance=clearance.watched_tick(problem.q, span[1], span[0]))
-    return solver.solve(watched, seed, thorough), True
+    watched = clearance.watched_tick(problem.q, span[1], span[0])
+    if not len(watched.near.pairs) and watched.kept(solution.q - problem.q):
+        return solution, True
+    watched = clearance.watched_tick(problem.q, span[1], span[0])
+    return solver.solve(problem._replace(clearance=watched), seed, thorough), True
 
 
 class _Seeds:

@@ -55,6 +55,16 @@ class Near(NamedTuple):
         return Near(self.pairs[which], self.distance[which], self.away[which], *points)
 
 
+class Known(NamedTuple):
+    """Bounds `least` (K,), m, of the distances of all pairs at posture `at` (n,)."""
+
+    at: Array
+    least: Array
+
+
+_NOTHING_NEAR = Near(np.zeros(0, dtype=np.intp), np.zeros(0), *np.zeros((3, 0, 3)))
+
+
 @dataclass
 class _Placed:
     """A solid of an obstacle that moves or may be seen: its number, pose in the obstacle, radius (m).
@@ -185,8 +195,10 @@ class Distances:
         """Whether it is certain without a look that no pair is within its influence at posture q (n,)."""
         if q is self._far_at:
             return True
-        if self._slack <= 0.0 or self._longest is None:
+        if self._slack <= 0.0:
             return False
+        if self._longest is None:
+            return self._fastest == 0.0 and self.clear_rows(q[None], self.influence) == 1
         moved = self._longest.dot(np.abs(q - self._last))
         if self._fastest > 0.0:
             moved += self._fastest * abs(self._time - self._looked_at)
@@ -196,32 +208,66 @@ class Distances:
         self._far_at = q
         return True
 
+    def clear_rows(self, q: Array, within: Array) -> int:
+        """How many of the first of postures q (N, n) surely have no pair nearer than `within` (K,) m.
+
+        Without a look, and for obstacles that are where they were at the last one.
+        """
+        sure = np.all(self._least - self._levers.moved(self._last, q) >= within, axis=1)
+        return len(q) if np.all(sure) else int(np.argmin(sure))
+
+    @property
+    def known(self) -> Known:
+        """What the looks so far tell."""
+        return Known(self._last, self._least)
+
+    def surely_clear(self, q: Array, before: Known, within: Array) -> bool:
+        """Whether posture q (n,) surely has no pair nearer than `within` (K,) m, by what was known `before`
+        and by the last look; never where obstacles move."""
+        if self._fastest > 0.0:
+            return False
+        first = before.least - self._levers.moved(before.at, q)
+        return bool(np.all(np.maximum(first, self._least - self._levers.moved(self._last, q)) >= within))
+
+    def keeps_between(self, q: Array, room: Array) -> bool:
+        """Whether no pair loses more than its `room` (K,) m half way from one row of q (N, n) to the next."""
+        return bool(np.all(0.5 * self._levers.moved(q[:-1], q[1:]) <= room))
+
     def near(self, q: Array, within: Array | None = None) -> Near:
         """Pairs nearer than `within` (K,) m, by default their influence, at posture q (n,)."""
         everything = within is None
         if everything and self._all_near is not None and _same(q, self._last):
             return self._all_near
         reach = self.influence if within is None else within
-        least = self._least - self._levers.moved(self._last, q)
+        moved = self._levers.moved(self._last, q)
+        least = self._least - moved
         if self._fastest > 0.0:
             least = least - self._rates * abs(self._time - self._looked_at)
-            self._looked_at = self._time
         asked = (least < reach).nonzero()[0]
+        if not len(asked) and not everything:
+            # Sure as it is: the last look goes on to count.
+            return _NOTHING_NEAR
+        self._looked_at = self._time
+        if len(asked) > 1:
+            asked = self._close(q, asked, reach, least, moved)
         found = self.of(q, asked)
         least[asked] = found.distance
         self._least, self._last = least, q.copy()
         close = found.distance < reach[asked]
-        found = found if np.count_nonzero(close) == len(asked) else found.chosen(close)
-        some_near = everything and len(found.pairs) > 0
+        count = np.count_nonzero(close)
+        some_near = everything and count > 0
         self._slack = -np.inf if some_near else float((least - self.influence).min(initial=np.inf))
+        if count == 0:
+            found = _NOTHING_NEAR
+        elif count < len(asked):
+            found = found.chosen(close)
         self._all_near = found if everything else None
         return found
 
     def of(self, q: Array, pairs: Numbers) -> Near:
         """These pairs at posture q (n,), however far."""
         if not len(pairs):
-            nothing = np.zeros((0, 3))
-            return Near(pairs, np.zeros(0), nothing, nothing, nothing)
+            return _NOTHING_NEAR
         self._place(q)
         known = self._known[pairs]
         unknown = len(pairs) - np.count_nonzero(known)
@@ -229,6 +275,22 @@ class Distances:
             self._look(pairs if unknown == len(pairs) else pairs[~known])
         found = self._found[pairs]
         return Near(pairs, found[:, 0], -found[:, 1:4], found[:, 4:7], found[:, 7:])
+
+    def _close(self, q: Array, pairs: Numbers, reach: Array, least: Array, moved: Array) -> Numbers:
+        """Those of `pairs` that the spheres about their solids do not tell apart by more than `reach` (K,) m.
+
+        What they tell is put into `least` (K,). A look is worth more: pairs that it may spare the next one
+        after a way as long as the last one, by which they have `moved` (K,) m, but the spheres do not, stay.
+        """
+        self._place(q)
+        middles = np.array([place.translation for place in self._geometry.oMg])
+        ways = middles[self._first[pairs]] - middles[self._second[pairs]]
+        apart = np.sqrt(np.einsum("ki,ki->k", ways, ways))
+        spheres = apart + self._deepest[pairs]
+        further = moved[pairs] + reach[pairs]
+        known = (spheres >= reach[pairs]) & ((spheres > further) | (apart < further))
+        least[pairs[known]] = spheres[known]
+        return np.asarray(pairs[~known])
 
     def _look(self, pairs: Numbers) -> None:
         """Distance, unit vector from the link to the other one and nearest points of pairs."""

@@ -19,7 +19,8 @@ class Levers:
     """Levers (K, n) of K pairs: what a unit of each joint moves them against each other at most, m.
 
     A joint that turns moves a point by its distance from the axis, at most the length of all that lies
-    between: `fixed` with all slides at 0, and what slides are drawn out. `slides` are pairs of a slide's
+    between: `fixed` with all slides at 0, and what slides are drawn out. A joint that carries both counts
+    nothing. `slides` are pairs of a slide's
     number (from 0) and the levers (K, n) that a metre of it adds.
     """
 
@@ -53,8 +54,11 @@ class Levers:
             for slide, added in drawn.items():
                 turning = [joint for joint in range(min(slide, body)) if not axes[joint].is_prismatic]
                 added[solid, turning] = float(slide < body)
-        pairs = fixed[first] + fixed[second]
-        return cls(pairs, tuple((k, added[first] + added[second]) for k, added in drawn.items()))
+        # What carries both moves neither against the other.
+        index, carriers = np.arange(n), np.array(bodies, dtype=np.intp)
+        apart = index >= np.minimum(carriers[first], carriers[second])[:, None]
+        pairs = apart * (fixed[first] + fixed[second])
+        return cls(pairs, tuple((k, apart * (added[first] + added[second])) for k, added in drawn.items()))
 
     @property
     def longest(self) -> Array | None:
@@ -62,9 +66,13 @@ class Levers:
         return None if self.slides else np.max(self.fixed, axis=0, initial=0.0)
 
     def moved(self, before: Array, after: Array) -> Array:
-        """Bound (K,), m, of what pairs come nearer between two postures (n,), every joint going straight."""
+        """Bound (K,), m, of what pairs come nearer between two postures (n,), every joint going straight.
+
+        Of many postures at once, either of them (N, n), the bounds are (N, K).
+        """
         way = np.abs(after - before)
-        bound = self.fixed @ way
+        bound = way @ self.fixed.T
         for slide, added in self.slides:
-            bound = bound + max(abs(before[slide]), abs(after[slide])) * (added @ way)
+            farthest = np.maximum(np.abs(before[..., slide, None]), np.abs(after[..., slide, None]))
+            bound = bound + farthest * (way @ added.T)
         return np.asarray(bound)

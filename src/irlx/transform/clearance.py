@@ -15,6 +15,7 @@ for the part dt/tau_seen of what is left above the margin.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass
 
@@ -45,6 +46,7 @@ Closest = tuple[int, float] | None
 _BENDS = 1e-4
 _NEAR_MARGIN = 0.01
 _MOST_LOOKS = 8
+_AHEAD = 16
 
 
 @dataclass(frozen=True)
@@ -167,7 +169,10 @@ class Clearance:
         """
         floors = self.floors(np.arange(len(self.distances.pairs)), start) if self.distances.moves else None
         self.after(elapsed)
-        near = self._within(q)
+        # No floor is above the margin.
+        near = self.distances.near(q, self.distances.margin)
+        if not len(near.pairs):
+            return None
         least = self.floors(near.pairs, start) if floors is None else floors[near.pairs]
         room = near.distance - least
         if not np.any(room < -ALLOWANCE):
@@ -189,6 +194,12 @@ class Clearance:
         k = int((near.distance - distances.margin[near.pairs]).argmin())
         return int(near.pairs[k]), float(near.distance[k])
 
+    def stays_clear(self, q: Array) -> bool:
+        """Whether the way through postures q (N, n) surely keeps all margins, joints going straight from one
+        to the next, where in each of them all pairs are beyond their influence."""
+        room = self.distances.influence - self.distances.margin
+        return self.distances.keeps_between(q, room)
+
     def inside_margin(self, q: Array) -> TooNear | None:
         """The pair of posture q (n,) that is deepest inside its margin; None where none is."""
         near = self.distances.near(q, self.distances.margin)
@@ -204,11 +215,48 @@ class Clearance:
         With that pair; None where there is none.
         """
         times = np.zeros(len(q)) if elapsed is None else elapsed
-        for row, (posture, time) in enumerate(zip(q, times.tolist(), strict=True)):
-            found = None if self.after(time).far(posture) else self.short(posture, start, time)
-            if found is not None:
-                return row, found
+
+        def found(row: int) -> TooNear | None:
+            time = float(times[row])
+            if self.distances.moves and self.after(time).far(q[row]):
+                return None
+            return self.short(q[row], start, time)
+
+        return self._first(q, self.distances.margin, found)
+
+    def _first(
+        self, q: Array, within: Array, found: Callable[[int], TooNear | None]
+    ) -> tuple[int, TooNear] | None:
+        """The first of postures q (N, n) at which something is `found`. Not asked is where surely no pair is
+        nearer than `within` (K,) m: a look at a posture also tells of those before and behind it."""
+        distances, row, last = self.distances, 0, len(q) - 1
+        while row <= last:
+            if not distances.moves:
+                row += distances.clear_rows(q[row : row + _AHEAD], within)
+            if row > last:
+                return None
+            before = distances.known
+            behind = found(row + 1) if row < last and not distances.moves else None
+            here = None if distances.surely_clear(q[row], before, within) else found(row)
+            if here is not None:
+                return row, here
+            if behind is not None:
+                return row + 1, behind
+            row += 1 if distances.moves else 2
         return None
+
+    def untouched(self, q: Array) -> bool:
+        """Whether all pairs are beyond their influence at all postures q (N, n), and none of them moves."""
+        distances = self.distances
+        if distances.moves:
+            return False
+        reach = distances.influence
+
+        def found(row: int) -> TooNear | None:
+            near = distances.near(q[row], reach)
+            return TooNear(int(near.pairs[0]), float(near.distance[0]), 0.0) if len(near.pairs) else None
+
+        return self._first(q, reach, found) is None
 
     def nearest(self, q: Array, start: Array, reserve: float = 0.0, elapsed: float = 0.0) -> TooNear | None:
         """The pair with the least room above what it must keep at q (n,), of those within their influence.

@@ -34,6 +34,8 @@ _LONGEST_CORRECTION = 0.5
 _DIFFERENCE = 1e-5
 _UNMOVED = 1e-9
 _BACK_INSIDE = 1e-13
+_TOGETHER = 3
+_NEARLY = 1e-6
 _SAME_RANK = 6
 """Digits of the values of joints that stand, rad or m, by which ranks are kept."""
 
@@ -69,7 +71,9 @@ class Fibre:
         weights: Array,
         bounds: tuple[Array, Array],
         free: NDArray[np.bool_],
+        coarse: bool = False,
     ) -> None:
+        """`coarse`: curvatures need not be better than a dry run needs them."""
         self.kinematics = kinematics
         self.target = target
         self.konf = konf
@@ -77,12 +81,15 @@ class Fibre:
         self.lower, self.upper = bounds
         self.free = free
         self._qp = DualSolver()
+        self._coarse = coarse
         self._reach = max(1.0, kinematics.description.reach)
         self._ranks: dict[bytes, int] = {}
 
     def within(self, lower: Array, upper: Array) -> Fibre:
         """The same fibre within other position limits (n,)."""
-        other = Fibre(self.kinematics, self.target, self.konf, self.weights, (lower, upper), self.free)
+        other = Fibre(
+            self.kinematics, self.target, self.konf, self.weights, (lower, upper), self.free, self._coarse
+        )
         other._ranks = self._ranks
         return other
 
@@ -131,6 +138,30 @@ class Fibre:
             return None
         back = np.where(free, np.clip(outside, self.lower, self.upper), outside)
         return back if float(np.max(np.abs(back - outside))) <= _BACK_INSIDE else None
+
+    def all_onto_pose(self, q: Array) -> Array | None:
+        """Postures on the pose by W-least Newton steps of the free joints from q (K, n), whatever the limits.
+
+        Those that do not come onto it are no numbers; None where the free joints cannot move all of the pose.
+        """
+        kinematics, free = self.kinematics, self.free
+        if self.rank(q[0], free) < kinematics.rows:
+            return None
+        found, inverse = q.copy(), 1.0 / self.weights[free]
+        for _ in range(_TOGETHER):
+            steps = [kinematics.difference(row, self.target) for row in found]
+            twists, jacobians = (
+                np.array([one[0] for one in steps]),
+                np.array([one[1][:, free] for one in steps]),
+            )
+            scaled = jacobians * inverse
+            try:
+                k = np.linalg.solve(scaled @ np.swapaxes(jacobians, 1, 2), twists[:, :, None])
+            except np.linalg.LinAlgError:
+                return None
+            found[:, free] += (np.swapaxes(scaled, 1, 2) @ k)[:, :, 0]
+        found[~np.all(np.abs(twists) <= _NEARLY, axis=1)] = np.nan
+        return np.asarray(found)
 
     def _newton(self, q: Array, free: NDArray[np.bool_], bounds: tuple[Array, Array]) -> Array | None:
         """Posture on the pose by steps of the joints `free` (n,) that keep `bounds`; None where they fail."""
@@ -214,7 +245,8 @@ class Fibre:
         """Second derivative of the distance along the fibre in the basis of `tangent`, shape (r, r).
 
         B' (W + sum_i k_i d2c_i) B, c the pose error and k the multipliers with J'k = -g but for the part
-        along the fibre; the second derivatives by central differences of the exact first ones.
+        along the fibre; the second derivatives by central differences of the exact first ones, by one-sided
+        ones where the fibre is `coarse`.
         """
         basis, movable = tangent.basis, tangent.movable
         scale = 1.0 / np.sqrt(self.weights[movable])
@@ -227,6 +259,10 @@ class Fibre:
             step = _DIFFERENCE / max(float(np.max(np.abs(basis[:, column]))), 1e-300)
             way = step * basis[:, column]
             ahead = self.kinematics.difference_derivative(q + way, self.target)[1]
+            if self._coarse:
+                # On the pose the derivative is that of the twist.
+                bent[:, column] = -(tangent.jacobian + ahead).T @ multipliers / step
+                continue
             behind = self.kinematics.difference_derivative(q - way, self.target)[1]
             bent[:, column] = (behind - ahead).T @ multipliers / (2.0 * step)
         curved = basis.T @ bent

@@ -30,7 +30,9 @@ _FINER = (1.0, 0.25, 0.0625)
 _LEAST_APART = 0.01
 
 
-def even_curve(fibre: Fibre, iterates: Array, stride: float, widening: float = 1.0) -> Array:
+def even_curve(
+    fibre: Fibre, iterates: Array, stride: float, widening: float = 1.0, all_at_once: bool = False
+) -> Array:
     """Points (K, n) of the curve through iterates (M, n), M >= 2, evenly spaced by arc length.
 
     Iterates closer than 0.3 `stride` are passed over; a cubic spline through the others gives the points, a
@@ -38,17 +40,20 @@ def even_curve(fibre: Fibre, iterates: Array, stride: float, widening: float = 1
     the limits lead each onto the pose. First and last are kept bit by bit. A spline through points that lie
     on a limit swings beyond it between them: inner points keep `RESERVE` away, `widening` times as much.
     Where a correction fails, the fibre bends too sharply: the same four and sixteen times finer, and at last
-    the iterates themselves.
+    the iterates themselves. `all_at_once`, for a dry run: points that nothing holds come onto the pose
+    together.
     """
     for finer in _FINER:
         knots = _thinned(iterates, _THINNED * stride * finer)
-        curve = _curve(fibre, iterates, knots, SPACING * finer, widening)
+        curve = _curve(fibre, iterates, knots, SPACING * finer, widening, all_at_once)
         if curve is not None:
             return curve
     return _thinned(iterates, _LEAST_APART * stride)
 
 
-def _curve(fibre: Fibre, iterates: Array, knots: Array, spacing: float, widening: float) -> Array | None:
+def _curve(
+    fibre: Fibre, iterates: Array, knots: Array, spacing: float, widening: float, all_at_once: bool
+) -> Array | None:
     """`even_curve` through knots (L, n) for one spacing; None where a point does not come onto the pose."""
     from scipy.interpolate import make_interp_spline
 
@@ -62,7 +67,12 @@ def _curve(fibre: Fibre, iterates: Array, knots: Array, spacing: float, widening
     points = _rounded(np.clip(spline(due), lower, upper))
     points[:, still] = knots[0, still]
     curve = [iterates[0]]
-    for point, low, high in zip(points[1:-1], lower[1:-1], upper[1:-1], strict=True):
+    together = fibre.all_onto_pose(points) if all_at_once else None
+    for k in range(1, pieces):
+        point, low, high = points[k], lower[k], upper[k]
+        if together is not None and _serves(together[k], point, (low, high), 0.5 * spacing):
+            curve.append(together[k])
+            continue
         corrected = _onto_pose(fibre.within(low, high), point, 0.5 * spacing)
         if corrected is None:
             corrected = _onto_pose(fibre, point, 0.5 * spacing)
@@ -70,6 +80,12 @@ def _curve(fibre: Fibre, iterates: Array, knots: Array, spacing: float, widening
             return None
         curve.append(corrected)
     return np.array([*curve, iterates[-1]])
+
+
+def _serves(found: Array, point: Array, bounds: tuple[Array, Array], nearest: float) -> bool:
+    """Whether a posture found for a point is one, within its bounds, and near it."""
+    inside = (bounds[0] <= found) & (found <= bounds[1]) & (np.abs(found - point) <= nearest)
+    return bool(np.all(inside))
 
 
 def _onto_pose(fibre: Fibre, point: Array, nearest: float) -> Array | None:

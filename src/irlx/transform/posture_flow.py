@@ -103,24 +103,30 @@ def posture_flow(
     limits: JointLimits,
     free: NDArray[np.bool_],
     qp: QpSolver,
+    coarse: bool = False,
 ) -> PostureFlow:
     """Follow the fibre of the tool pose at q (n,) down to the nearest posture to konf (n,), rad or m.
 
     Position `limits` hold throughout, q must keep them; joints that are not `free` (n,) stay bit by bit and
     do not count in the distance. Ends at a local minimum of it, at konf's very values where konf has the tool
     pose within 1e-9 and the flow comes to it; values of konf within 1e-12 of q's mean q's. Never raises for
-    postures: `end` says where it could not go on.
+    postures: `end` says where it could not go on. `coarse`, for a dry run: the same
+    points to some 1e-7, for less.
     """
     meant = np.where(np.abs(konf - q) <= _SAME_VALUE, q, konf)
     # Squares of what a program may write overflow; so far away only the direction counts.
     konf_near = np.clip(meant, q - _FARTHEST, q + _FARTHEST)
-    fibre = _fibre(kinematics, q, konf_near, weights, limits, free)
+    fibre = _fibre(kinematics, q, konf_near, weights, limits, free, coarse)
     iterates, end = _descend(fibre, q, qp)
     iterates = _onto_konf(fibre, iterates)
     last = iterates[-1]
     remaining = meant - last
     reached = bool(np.max(np.abs(remaining), initial=0.0) <= REACHED)
-    points = even_curve(fibre, np.array(iterates), STRIDE) if len(iterates) > 1 else np.array([q])
+    points = (
+        even_curve(fibre, np.array(iterates), STRIDE, all_at_once=coarse)
+        if len(iterates) > 1
+        else np.array([q])
+    )
     return PostureFlow(
         points,
         fibre,
@@ -156,9 +162,11 @@ def _fibre(
     weights: Array,
     limits: JointLimits,
     free: NDArray[np.bool_],
+    coarse: bool = False,
 ) -> Fibre:
     target = kinematics.target(*kinematics.tool_pose(q))
-    return Fibre(kinematics, target, konf, weights, (limits.position_lower, limits.position_upper), free)
+    bounds = limits.position_lower, limits.position_upper
+    return Fibre(kinematics, target, konf, weights, bounds, free, coarse)
 
 
 def _descend(fibre: Fibre, q: Array, qp: QpSolver) -> tuple[list[Array], FlowEnd]:

@@ -39,6 +39,8 @@ def usual_rank(kinematics: Kinematics, q: Array, moving: NDArray[np.bool_]) -> i
         columns = kinematics.difference(posture, target)[1][:, moving]
         values = scaled_singular_values(columns, kinematics.row_scale)
         rank = max(rank, int(np.count_nonzero(values > _ROUNDING * values[0])))
+        if rank == min(columns.shape):
+            break
     return rank
 
 

@@ -30,16 +30,17 @@ class BoundSource(IntEnum):
     BRAKING = 3
 
 
-def braking_speed(room: Array, deceleration: Array, dt: float) -> Array:
+def braking_speed(room: Array, deceleration: Array, dt: float | Array) -> Array:
     """Fastest speed from which whole ticks of `deceleration` stop within `room`.
 
     With steps v dt, (v - a dt) dt, ... down to rest: v = a dt (u / (m + 1) + m / 2), u = room / (a dt^2),
-    m = floor((sqrt(1 + 8 u) - 1) / 2). Shapes (n,); room in rad or m, not negative; infinite where
-    `deceleration` or `room` is.
+    m = floor((sqrt(1 + 8 u) - 1) / 2). Shapes (n,), or (N, n) with ticks `dt` (N, 1); room in rad or m, not
+    negative; infinite where `deceleration` or `room` is.
     """
     speed = np.full(room.shape, np.inf)
     known = np.isfinite(deceleration) & np.isfinite(room)
-    a = deceleration[known]
+    a = np.broadcast_to(deceleration, room.shape)[known]
+    dt = np.broadcast_to(dt, room.shape)[known]
     unit = a * dt**2
     # A joint that cannot decelerate at all must not move towards its limit.
     u = np.divide(np.maximum(room[known], 0.0), unit, out=np.zeros_like(unit), where=unit > 0.0)

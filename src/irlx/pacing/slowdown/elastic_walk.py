@@ -21,12 +21,13 @@ from numpy.typing import NDArray
 from irlx.pacing.slowdown.grid import PathGrid
 from irlx.pacing.slowdown.model import Model
 from irlx.pacing.slowdown.reserve import rounded_inside
+from irlx.pacing.slowdown.room import Room
 from irlx.transform.clearance import SideRows, TickClearance
 from irlx.transform.compact import null_space_rows
 from irlx.transform.criteria.criterion import Criterion
 from irlx.transform.qp.dual import DualSolver
 from irlx.transform.qp.proxqp import ProxQpSolver
-from irlx.transform.step_bounds import BoundSource, StepBounds, braking_speed
+from irlx.transform.rough_tick import RoughTickSolver
 from irlx.transform.tick import TickSolution, TickSolver
 from irlx.transform.tick_problem import TickProblem
 
@@ -34,12 +35,11 @@ Array = NDArray[np.float64]
 
 _ROUNDS = 12
 _SETTLED = 1e-6
+_COARSELY_SETTLED = 3e-5
 _NO_SLOPE = 1e-14
 _ROUNDING = 1e-12
-_BRAKE_SHARE = 0.9
 _CURVATURE = 1e-3
 _LONGEST = 0.5
-_LEAD_BACK = 12.0
 
 
 @dataclass(frozen=True)
@@ -63,13 +63,16 @@ def elastic_walk(
     criterion_of: Callable[[float, float], Criterion],
     bounds: tuple[Array, Array],
     reserve: float,
+    coarse: bool = False,
 ) -> Passage:
     """Walk from posture `start` (n,) along the knots of a grid.
 
     `criterion_of` gives the criterion for a path parameter and the way to it, `bounds` the lower and upper
     positions (N + 1, n) of the knots; a joint outside them comes back by `reserve` / 12 an interval.
+    `coarse`: postures only as near to the best ones as a dry run needs.
     """
-    solver = TickSolver(model.kinematics, ProxQpSolver())
+    solver = (RoughTickSolver if coarse else TickSolver)(model.kinematics, ProxQpSolver())
+    settled = _COARSELY_SETTLED if coarse else _SETTLED
     targets = model.targets(grid.poses)
     q = np.empty((grid.intervals + 1, start.size))
     stretch = np.zeros(grid.intervals)
@@ -77,23 +80,29 @@ def elastic_walk(
     elapsed = 0.0
     for i in range(grid.intervals):
         target = targets[i + 1]
-        room = _Room.at(model, q[i], (bounds[0][i + 1], bounds[1][i + 1]), reserve, float(grid.times[i]))
+        room = Room.at(model, q[i], (bounds[0][i + 1], bounds[1][i + 1]), reserve, float(grid.times[i]))
         criterion = criterion_of(float(grid.s[i + 1]), float(grid.s[i + 1] - grid.s[i])).begun(q[i])
         keeping = _kept_clear(model, q[i], room.duration, elapsed, reserve)
         problem = TickProblem(target, q[i], room.none(), criterion, model.free, keeping)
+        if isinstance(solver, RoughTickSolver):
+            inside = solver.at_once(problem._replace(bounds=room.unstretched()), _continued(grid.s, q, i))
+            if isinstance(inside, TickSolution):
+                q[i + 1] = rounded_inside(inside.q, model.limits)
+                elapsed += room.duration
+                continue
         easy = solver.solve(problem, thorough=False)
         if easy.solved and room.holds(easy.q - q[i]):
             q[i + 1] = rounded_inside(easy.q, model.limits)
             elapsed += room.duration
             continue
         begin = easy.q - q[i] if easy.solved else np.zeros(start.size)
-        found = _Stretch(model, solver, problem, room).solve(begin)
+        found = _Stretch(model, solver, problem, room, settled).solve(begin)
         if found is None and keeping is not None:
             # How fast the path itself leads near something is for the clock: the margins are left.
             problem = problem._replace(
                 clearance=_kept_clear(model, q[i], room.duration, elapsed, reserve, False)
             )
-            found = _Stretch(model, solver, problem, room).solve(np.zeros(start.size))
+            found = _Stretch(model, solver, problem, room, settled).solve(np.zeros(start.size))
         if found is None:
             last = solver.solve(problem._replace(bounds=room.positions()))
             if not last.solved:
@@ -105,51 +114,13 @@ def elastic_walk(
     return Passage(q, stretch)
 
 
-@dataclass(frozen=True)
-class _Room:
-    """Bounds of one interval: position `low`, `high`; what may be stretched, `down` and `up`, all (n,)."""
-
-    low: Array
-    high: Array
-    down: Array
-    up: Array
-    duration: float
-
-    @classmethod
-    def at(
-        cls, model: Model, q: Array, bounds: tuple[Array, Array], reserve: float, duration: float
-    ) -> _Room:
-        limits = model.limits
-        low = np.maximum(np.minimum(bounds[0], q + reserve / _LEAD_BACK), limits.position_lower) - q
-        high = np.minimum(np.maximum(bounds[1], q - reserve / _LEAD_BACK), limits.position_upper) - q
-        room = np.maximum(np.concatenate([high, -low]), 0.0)
-        braking = np.concatenate([-limits.acceleration_lower, limits.acceleration_upper])
-        fastest = np.concatenate([limits.speed_upper, -limits.speed_lower])
-        both = np.minimum(fastest, braking_speed(room, _BRAKE_SHARE * braking, duration))
-        up, down = both[: q.size], both[q.size :]
-        return cls(low, high, duration * down, duration * up, duration)
-
-    def none(self) -> StepBounds:
-        """No bounds."""
-        wide = np.full(self.low.size, np.inf)
-        source = np.full(self.low.size, BoundSource.POSITION, dtype=np.int8)
-        return StepBounds(-wide, wide, source, source)
-
-    def holds(self, step: Array) -> bool:
-        """Whether a step (n,) needs no stretch."""
-        lower, upper = np.maximum(self.low, -self.down), np.minimum(self.high, self.up)
-        return bool(np.all((lower <= step) & (step <= upper)))
-
-    def positions(self) -> StepBounds:
-        """Position bounds alone."""
-        source = np.full(self.low.size, BoundSource.POSITION, dtype=np.int8)
-        return StepBounds(self.low, self.high, source, source)
-
-    def stretch_of(self, step: Array) -> float:
-        """Stretch that a step (n,) needs."""
-        bound = np.where(step > 0.0, self.up, self.down)
-        share = np.abs(step) / np.maximum(bound, 1e-300)
-        return max(float(np.max(np.where(np.isfinite(bound), share, 0.0))) - 1.0, 0.0)
+def _continued(s: Array, q: Array, last: int) -> Array:
+    """Step (n,) behind the knot `last` that continues the knots up to it as a cubic."""
+    first = max(last - 3, 0)
+    at, known = s[last + 1], s[first : last + 1]
+    apart = np.where(np.eye(known.size, dtype=np.bool_), 1.0, known - known[:, None])
+    factors = np.where(np.eye(known.size, dtype=np.bool_), 1.0, known - at) / apart
+    return np.asarray(np.prod(factors, axis=1) @ q[first : last + 1] - q[last])
 
 
 class _Stretch:
@@ -160,9 +131,10 @@ class _Stretch:
         model: Model,
         solver: TickSolver,
         problem: TickProblem,
-        room: _Room,
+        room: Room,
+        settled: float,
     ) -> None:
-        self._model, self._solver, self._room = model, solver, room
+        self._model, self._solver, self._room, self._settled = model, solver, room, settled
         self._problem = problem
         speed = np.minimum(model.limits.speed_upper, -model.limits.speed_lower)
         speed = np.where(np.isfinite(speed), speed, 1.0)
@@ -182,7 +154,7 @@ class _Stretch:
             change = step - whole
             largest = float(np.max(np.abs(change), initial=0.0))
             whole = whole + change * min(1.0, _LONGEST / max(largest, 1e-300))
-            if largest <= _SETTLED:
+            if largest <= self._settled:
                 # Where joints are held a step may be small without leading anywhere.
                 left, _ = self._model.kinematics.difference(self._problem.q + whole, self._problem.target)
                 if float(np.max(np.abs(left))) > _SETTLED:
@@ -208,12 +180,12 @@ class _Stretch:
         return step, found[1]
 
 
-def _reduced(room: _Room, free: NDArray[np.bool_]) -> _Room:
-    return _Room(room.low[free], room.high[free], room.down[free], room.up[free], room.duration)
+def _reduced(room: Room, free: NDArray[np.bool_]) -> Room:
+    return Room(room.low[free], room.high[free], room.down[free], room.up[free], room.duration)
 
 
 def _elastic_step(
-    rows: Array, target: Array, room: _Room, price: float, sides: SideRows | None = None
+    rows: Array, target: Array, room: Room, price: float, sides: SideRows | None = None
 ) -> tuple[Array, float] | None:
     """Minimise 1/2 |z|^2 + price (eps + eps^2 / 2000), D = target + rows z; returns D and eps.
 
@@ -224,7 +196,7 @@ def _elastic_step(
 
 
 def _many_unknowns(
-    rows: Array, target: Array, room: _Room, price: float, sides: SideRows | None
+    rows: Array, target: Array, room: Room, price: float, sides: SideRows | None
 ) -> tuple[Array, float] | None:
     """With e = scale (eps + offset) the price is half a square, and all is a least-norm problem in (z, e)."""
     count, unknowns = rows.shape
@@ -273,7 +245,7 @@ def _within_sides(sides: SideRows, least: float, most: float) -> tuple[float, fl
 
 
 def _one_unknown(
-    rows: Array, target: Array, room: _Room, price: float, sides: SideRows | None
+    rows: Array, target: Array, room: Room, price: float, sides: SideRows | None
 ) -> tuple[Array, float] | None:
     """The cost over the one unknown is convex and made of parabolas: its least value is where one of them
     has its own, where two of them meet, or at an end of what the positions allow."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,8 +23,14 @@ RUNGS = (None, Smoothing(0.04, 0.0), Smoothing(0.1, 1.0), Smoothing(0.3, 1.0))
 GOOD_ENOUGH = 5e-4
 """Loss of time against the programme with which no further rung is tried."""
 
+UNTOLD = 8e-3
+"""The same in a dry run, where so little is not told (IRL445)."""
+
 ROUGH_GAIN = 5e-3
 """Gain of time that an unsmoothed motion must bring where no acceleration limit tames its kinks."""
+
+_LONG = 4.0
+"""Times the programmed duration from which on no rung is passed over: the motion may not stand in another."""
 
 _PARTS = np.array([0.0, 0.125, 0.25, 0.5, 0.75])
 _ROUNDING = 1e-12
@@ -46,24 +52,60 @@ def timed_curves(
     acc: float,
     pinned: Sequence[int] = (),
     reserve: float = 0.0,
-) -> list[TimedCurve]:
-    """The rungs for the walked postures (N + 1, n), fastest first; none that leaves the position limits.
+    least_gain: float = 0.0,
+    kinked: bool = True,
+) -> Iterator[TimedCurve]:
+    """The rungs for the walked postures (N + 1, n), fastest first; none that leaves the position limits or
+    comes too near to something. That is looked at when a rung is asked for.
 
     `bounds` are lower and upper positions (N + 1, n), `acc` the largest |d2s/dt2|; the postures of the
-    knots `pinned` stay; `reserve` (m) is kept beside margins.
+    knots `pinned` stay; `reserve` (m) is kept beside margins. Rungs behind one that does not gain the part
+    `least_gain` of the time come last, whatever their clock; so do all behind a walk that is not `kinked`.
     """
     programmed = float(np.sum(grid.times))
     known = np.isfinite(model.limits.acceleration_upper) | np.isfinite(model.limits.acceleration_lower)
     tamed = bool(np.any(known))
     found: list[tuple[float, TimedCurve]] = []
-    for rung in RUNGS if tamed else (*RUNGS[1:], RUNGS[0]):
-        handicap = 1.0 + ROUGH_GAIN if rung is None and not tamed else 1.0
+    for rung in _in_turn(tamed or not kinked, least_gain > 0.0):
+        handicap = 1.0 + ROUGH_GAIN if rung is None and not tamed and kinked else 1.0
         timed = _timed(model, grid, walked, bounds, acc, rung, pinned, reserve)
-        if timed is not None:
-            found.append((timed.clock.duration * handicap, timed))
-            if timed.clock.duration <= programmed * (1.0 + GOOD_ENOUGH):
-                break
-    return [timed for _, timed in sorted(found, key=lambda entry: entry[0])]
+        if timed is None:
+            continue
+        duration = timed.clock.duration
+        enough = duration <= programmed * (1.0 + (GOOD_ENOUGH if least_gain == 0.0 else UNTOLD))
+        if enough and not _clear(model, grid, timed.curve):
+            continue
+        best = min((before for before, _ in found), default=np.inf)
+        found.append((duration * handicap, timed))
+        if enough:
+            break
+        gains = kinked and (best == np.inf or duration * handicap < best * (1.0 - least_gain))
+        if least_gain > 0.0 and not gains and min(best, duration) < _LONG * programmed:
+            yield from _clear_ones(model, grid, found)
+            found = []
+    yield from _clear_ones(model, grid, found)
+
+
+def _in_turn(tamed: bool, quick: bool) -> tuple[Smoothing | None, ...]:
+    """The rungs in the order in which they are tried, `quick`: what tells most about the others first."""
+    light, middle, strong = RUNGS[1:]
+    smooth = (strong, middle, light) if quick else (light, middle, strong)
+    return (None, *smooth) if tamed else (*smooth, None)
+
+
+def _clear_ones(model: Model, grid: PathGrid, found: list[tuple[float, TimedCurve]]) -> Iterator[TimedCurve]:
+    """Those that come too near to nothing, fastest first."""
+    for _, timed in sorted(found, key=lambda entry: entry[0]):
+        if _clear(model, grid, timed.curve):
+            yield timed
+
+
+def _clear(model: Model, grid: PathGrid, curve: JointCurve) -> bool:
+    """Whether a curve comes too near to nothing."""
+    if model.clearance is None:
+        return True
+    places = places_between(grid)
+    return model.clearance.first_short(curve.at(places), curve.q[0], grid.times_at(places)) is None
 
 
 def _timed(
@@ -76,8 +118,7 @@ def _timed(
     pinned: Sequence[int],
     reserve: float,
 ) -> TimedCurve | None:
-    """The curve of one rung with its clock; None where it leaves the position limits, comes too near to
-    something or gets lost."""
+    """The curve of one rung with its clock; None where it leaves the position limits or gets lost."""
     try:
         q = walked if rung is None else relax(model, grid, walked, bounds, rung, pinned, reserve)
     except np.linalg.LinAlgError:
@@ -92,11 +133,6 @@ def _timed(
         > _ROUNDING
     ):
         return None
-    clearance = model.clearance
-    if clearance is not None:
-        places = places_between(grid)
-        if clearance.first_short(curve.at(places), q[0], grid.times_at(places)) is not None:
-            return None
     clock = plan_clock(clock_bounds(curve, limits, grid.rates, acc))
     return TimedCurve(curve, clock) if clock is not None else None
 

@@ -48,8 +48,7 @@ def near_knots(model: Model, grid: PathGrid, q: Array, reserve: float) -> NearKn
         clearance.after(float(times[knot]))
         if distances.far(q[knot]):
             continue
-        near = distances.near(q[knot], np.maximum(least + _BAND, distances.influence))
-        near = near.chosen(near.distance < least[near.pairs] + _BAND)
+        near = distances.near(q[knot], least + _BAND)
         if len(near.pairs):
             points = distances.jacobians(q[knot], near)
             rates.append(np.einsum("pi,pij->pj", near.away, points)[:, model.free])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +40,9 @@ LONGEST_STAND = 2.0
 
 SINGULAR_SHARE = 1e-3
 """Smallest over largest singular value of the scaled Jacobian below which a place counts as singular."""
+
+COARSE_GAIN = 3e-3
+"""Part of its time that a dry run must win by smoothing for more of it to be tried."""
 
 _STRETCHES = 8
 _RESERVES = 4
@@ -97,7 +101,8 @@ class MotionTask:
     """A motion to plan from posture `start` (n,): its path, programmed law, criterion by path parameter.
 
     `acc` is the largest |d2s/dt2|; `draws` tells that the criterion draws the joints to a posture, and
-    `through` at which path parameters on the way others are asked for.
+    `through` at which path parameters on the way others are asked for. `undisturbed` gives postures (M, n) at
+    path parameters (M,) without bounds, roughly, where a dry run knows them.
     """
 
     path: PosePath
@@ -108,6 +113,7 @@ class MotionTask:
     ticking: Ticking
     draws: bool = False
     through: tuple[float, ...] = ()
+    undisturbed: Callable[[Array], Array] | None = None
 
 
 def plan_motion(model: Model, task: MotionTask) -> PlannedMotion | Refusal:
@@ -149,25 +155,35 @@ def _planned(model: Model, task: MotionTask) -> PlannedMotion | Refusal:
 def _with_reserve(
     model: Model, task: MotionTask, grid: PathGrid, bounds: tuple[Array, Array], reserve: float
 ) -> PlannedMotion | Refusal:
-    passage = elastic_walk(model, grid, task.start, task.criterion_of, bounds, reserve)
-    if passage.stopped is not None:
-        interval, solution = passage.stopped
-        place = float(grid.s[interval + 1])
-        return Refusal(place, solution=solution, reserve=reserve, elapsed=passage.elapsed)
-    q = passage.q
+    coarse = task.ticking.resolution.is_coarse
+    easy = _undisturbed(model, task, grid, bounds, reserve) if coarse else None
+    if easy is None:
+        passage = elastic_walk(model, grid, task.start, task.criterion_of, bounds, reserve, coarse)
+        if passage.stopped is not None:
+            interval, solution = passage.stopped
+            place = float(grid.s[interval + 1])
+            return Refusal(place, solution=solution, reserve=reserve, elapsed=passage.elapsed)
+    elif model.clearance is not None and model.clearance.stays_clear(easy):
+        model = replace(model, clearance=None)
+    q = passage.q if easy is None else easy
     # Knots are close: the one next to a place stands for it.
     through = tuple(grid.inner_knot(place) for place in task.through)
     if task.draws:
         q = with_drawn_end(model, grid, q, bounds, task.criterion_of, through)
-    curves = timed_curves(model, grid, q, bounds, task.acc, through, reserve)
-    if not curves:
+    least_gain = COARSE_GAIN if coarse else 0.0
+    kinked = easy is None
+    curves = timed_curves(model, grid, q, bounds, task.acc, through, reserve, least_gain, kinked)
+    fastest = next(curves, None)
+    if fastest is None:
         return _outside(model, grid, q)
-    standing = _standing(model, curves[0], grid)
+    standing = _standing(model, fastest, grid)
     if standing is not None:
-        return Refusal(float(grid.s[standing]), timed=curves[0], knot=standing)
+        return Refusal(float(grid.s[standing]), timed=fastest, knot=standing)
     found: PlannedMotion | Refusal = Refusal(0.0)
     # A rougher curve may have places where its clock stands, although the best one has none.
-    for timed in (timed for timed in curves if np.isfinite(timed.clock.duration)):
+    for timed in chain([fastest], curves):
+        if not np.isfinite(timed.clock.duration):
+            continue
         # The path correction of a rough curve may pass a position limit on which a joint starts.
         try:
             found = rows_on_clock(model, timed, task.ticking, float(np.sum(grid.times)))
@@ -177,6 +193,20 @@ def _with_reserve(
         if isinstance(found, PlannedMotion):
             break
     return found
+
+
+def _undisturbed(
+    model: Model, task: MotionTask, grid: PathGrid, bounds: tuple[Array, Array], reserve: float
+) -> Array | None:
+    """Postures (N + 1, n) of the knots where a dry run finds them all at once; else None."""
+    # Imported here: only a dry run has a use for it.
+    from irlx.pacing.slowdown.undisturbed import undisturbed_postures
+
+    if task.undisturbed is None:
+        return None
+    guess = task.undisturbed(grid.s)
+    guess[0], guess[:, ~model.free] = task.start, task.start[~model.free]
+    return undisturbed_postures(model, grid, guess, task.criterion_of, bounds, reserve)
 
 
 def _most_singular(model: Model, timed: TimedCurve, grid: PathGrid) -> int:
