@@ -59,6 +59,7 @@ def cycles(tmp_path_factory):
     return rows
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MOVES)
 def test_five_cycles_are_one(cycles, name: str) -> None:
     ends, parts = cycles(name, True)

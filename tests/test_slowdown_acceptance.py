@@ -22,7 +22,7 @@ from stream_judge import Written, excess, on_circle, on_line, tool_poses
 pytestmark = [pytest.mark.req("MOT-20"), pytest.mark.req("MOT-21")]
 
 needs_panda = pytest.mark.skipif(robot_data_folder() is None, reason='pip install "irlx[robots]"')
-ticks = pytest.mark.parametrize("tick", [1.0, 4.0])
+ticks = pytest.mark.parametrize("tick", [pytest.param(1.0, marks=pytest.mark.slow), 4.0])
 slow_ticks = pytest.mark.parametrize("tick", [pytest.param(1.0, marks=pytest.mark.slow), 4.0])
 """Ticks of the cases on other robots: 1 ms in the long run alone."""
 KINDS = ("position", "speed", "acceleration")

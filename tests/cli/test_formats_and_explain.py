@@ -114,7 +114,7 @@ def test_ignored_warnings_of_the_motion(inside, folder):
     for comment in ("", "  { irlx: ignore IRL432 }"):
         (folder / "m.irl").write_text(f"PROGRAM m;\nBEGIN\n  {moves.format(comment)}ENDPROGRAM;\n")
         told = [inside("check", "m.irl", "--motion").stderr, inside("run", "m.irl").stderr]
-        assert ["IRL432" in words for words in told] == [not comment] * 2
+        assert ["IRL432:" in words for words in told] == [not comment] * 2
         assert "IRL140" not in "".join(told)
 
 

@@ -154,7 +154,7 @@ def distances(found, solid=None, places=None) -> np.ndarray:
 
 
 @pytest.mark.req("TRF-13")
-@pytest.mark.parametrize("tick", [5, 20])
+@pytest.mark.parametrize("tick", [pytest.param(5, marks=pytest.mark.slow), 20])
 def test_the_elbow_makes_room_for_a_ball_that_is_seen_coming(tmp_path, tick):
     path = files(tmp_path, tick=tick)
     found = followed(path, coming(0.15))

@@ -90,7 +90,7 @@ def test_one_mistake_is_named_where_it_is(short_programs, mistake):
 
 
 @pytest.mark.req("LANG-05")
-@pytest.mark.parametrize("count", range(1, 11))
+@pytest.mark.parametrize("count", [1, 2, 4, 10])
 def test_mistakes_far_apart(programs, count):
     check_draws(programs, count, random.Random(count), DRAWS)
 

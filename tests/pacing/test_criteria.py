@@ -163,7 +163,7 @@ def test_weights_and_clauses_add_up(shop) -> None:
 
 @pytest.mark.req("TRF-14")
 @pytest.mark.parametrize("acceleration", [100.0, 400.0])
-@pytest.mark.parametrize("name", ["arm7", "koch11"])
+@pytest.mark.parametrize("name", ["arm7", pytest.param("koch11", marks=pytest.mark.slow)])
 def test_switching_in_the_midst_breaks_no_bound(name, acceleration, shop) -> None:
     """Strong criteria switched on, over, off, under tight acceleration limits; the verifier judges."""
     body = f"""  MOVE LIN away;

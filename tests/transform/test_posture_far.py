@@ -124,7 +124,7 @@ def assert_governed(arm, goal: np.ndarray, rows: list[np.ndarray], dt: float, to
 
 @pytest.mark.req("TRF-05")
 @pytest.mark.req("TRF-14")
-@pytest.mark.parametrize("away", [1.0, 2.0, 3.0])
+@pytest.mark.parametrize("away", [1.0, pytest.param(2.0, marks=pytest.mark.slow), 3.0])
 def test_a_governed_reference_is_never_far(arm, away: float) -> None:
     """What a tick is drawn to is a step away however far the goal: it settles, and no joint jumps."""
     law = Trapezoid.fastest(1.0, 1.0, 1.0)
@@ -135,7 +135,7 @@ def test_a_governed_reference_is_never_far(arm, away: float) -> None:
 
 
 @pytest.mark.req("TRF-05")
-@pytest.mark.parametrize("away", [1.0, 2.0, 3.0])
+@pytest.mark.parametrize("away", [1.0, *(pytest.param(way, marks=pytest.mark.slow) for way in (2.0, 3.0))])
 def test_a_whole_return_ends_in_the_best_posture(arm, away: float) -> None:
     """With time for all of the way the goal itself is the reference at last: its best posture is reached."""
     law = Trapezoid.fastest(1.0, 0.025, 1.0)

@@ -64,7 +64,7 @@ def assert_even(points):
 
 @pytest.mark.req("TRF-05")
 @pytest.mark.req("TRF-15")
-@pytest.mark.parametrize(("name", "seeds"), [("arm7", range(140)), ("koch11", range(60))])
+@pytest.mark.parametrize(("name", "seeds"), [("arm7", range(70)), ("koch11", range(20))])
 def test_random_postures(name, seeds, request):
     arm = request.getfixturevalue(name)
     most_frozen = arm.n - 7

@@ -87,7 +87,7 @@ def long_stream(kit, rounds: int):
 
 
 @pytest.mark.req("STR-06")
-@pytest.mark.parametrize("ending", [".irdata", ".npz", ".csv"])
+@pytest.mark.parametrize("ending", [".irdata", ".npz", pytest.param(".csv", marks=pytest.mark.slow)])
 def test_memory_does_not_grow_with_the_stream(ending, kit, tmp_path):
     import tracemalloc
 
