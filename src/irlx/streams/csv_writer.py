@@ -15,7 +15,7 @@ import numpy as np
 
 from irlx.streams.header_plain import header_to_plain
 from irlx.streams.joint_stream import BlockRecord, StreamHeader
-from irlx.streams.numbers import texts_of, texts_of_rows
+from irlx.streams.numbers import rows_of, texts_of, texts_of_rows
 from irlx.streams.scan import RowBatch, StatedRates
 from irlx.streams.text_writer import TextWriter
 
@@ -71,5 +71,5 @@ def column_line(header: StreamHeader) -> bytes:
 def _lines(batch: RowBatch, rates: StatedRates) -> bytes:
     """Lines of rows, numbers with as few digits as they take."""
     tails = texts_of_rows(np.concatenate((batch.q, rates.qd, rates.qdd, batch.tool), axis=1))
-    heads = zip(batch.ticks.tolist(), texts_of(rates.t), batch.block.tolist(), tails, strict=True)
-    return b"".join([b"%d,%b,%d,%b\n" % head for head in heads])
+    ticks, block = texts_of(batch.ticks), texts_of(batch.block)
+    return rows_of(ticks, b",", texts_of(rates.t), b",", block, b",", tails, b"\n")

@@ -8,14 +8,15 @@ from typing import Any
 
 from irlx.streams.header_plain import header_to_plain, record_to_plain
 from irlx.streams.joint_stream import BlockRecord, StreamHeader
-from irlx.streams.numbers import texts_of, texts_of_rows
+from irlx.streams.numbers import rows_of, texts_of, texts_of_rows
 from irlx.streams.scan import RowBatch, StatedRates
 from irlx.streams.text_writer import TextWriter
 
 SAMPLE_KEYS = ("tick", "t", "block", "q", "qd", "qdd", "tool")
 """Entries of a sample, in the order of the file."""
 
-_SAMPLE = b'{"tick":%d,"t":%b,"block":%d,"q":[%b],"qd":[%b],"qdd":[%b],"tool":[%b]}\n'
+_SAMPLE = (b'{"tick":', b',"t":', b',"block":', b',"q":[', b'],"qd":[', b'],"qdd":[', b'],"tool":[')
+"""What stands before each of them."""
 
 
 class JsonlWriter(TextWriter):
@@ -46,6 +47,7 @@ def line_of(key: str, value: Any) -> bytes:
 
 def _lines(batch: RowBatch, rates: StatedRates) -> bytes:
     """Lines of samples, numbers with as few digits as they take."""
+    counts = (texts_of(batch.ticks), texts_of(rates.t), texts_of(batch.block))
     vectors = (texts_of_rows(values) for values in (batch.q, rates.qd, rates.qdd, batch.tool))
-    rows = zip(batch.ticks.tolist(), texts_of(rates.t), batch.block.tolist(), *vectors, strict=True)
-    return b"".join([_SAMPLE % row for row in rows])
+    parts = zip(_SAMPLE, [*counts, *vectors], strict=True)
+    return rows_of(*(part for pair in parts for part in pair), b"]}\n")

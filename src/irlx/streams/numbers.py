@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 import orjson
 
-from irlx.streams.joint_stream import Floats
+from irlx.streams.joint_stream import Floats, Integers
 
 NUMBER_CHARACTERS = b"0123456789+-.e"
 """All that a number is made of."""
@@ -24,9 +24,24 @@ def texts_of_rows(values: Floats, between: bytes = b",") -> list[bytes]:
     return text[2:-2].split(b"]" + between + b"[")
 
 
-def texts_of(values: Floats) -> list[bytes]:
-    """Text of each of finite values (N,)."""
-    return orjson.dumps(values, option=orjson.OPT_SERIALIZE_NUMPY)[1:-1].split(b",") if len(values) else []
+def texts_of(values: Floats | Integers) -> list[bytes]:
+    """Text of each of finite values or counts (N,)."""
+    if not len(values):
+        return []
+    text = orjson.dumps(np.ascontiguousarray(values), option=orjson.OPT_SERIALIZE_NUMPY)
+    return text[1:-1].split(b",")
+
+
+def rows_of(*columns: bytes | list[bytes]) -> bytes:
+    """The texts of rows one after another, each made of `columns`: one text a row, or the same for all.
+
+    At least one column is a list; to copy every text but once is what takes the time of long streams.
+    """
+    count = next(len(column) for column in columns if isinstance(column, list))
+    texts = [b""] * (len(columns) * count)
+    for place, column in enumerate(columns):
+        texts[place :: len(columns)] = column if isinstance(column, list) else [column] * count
+    return b"".join(texts)
 
 
 def table_of(text: bytes, columns: int) -> Floats:

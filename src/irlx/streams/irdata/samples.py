@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from itertools import count
-
 import numpy as np
 
 from irlx.streams.irdata.codes import SAMPLE
 from irlx.streams.irdata.record import LINE_END, RecordError
 from irlx.streams.joint_stream import Floats, Integers
-from irlx.streams.numbers import NUMBER_CHARACTERS, table_of, texts_of_rows
+from irlx.streams.numbers import NUMBER_CHARACTERS, rows_of, table_of, texts_of, texts_of_rows
 from irlx.streams.scan import RowBatch
 
 MARK = f", {SAMPLE}, ".encode()
@@ -31,8 +29,9 @@ def is_sample(line: bytes) -> bool:
 def samples_text(first: int, batch: RowBatch) -> bytes:
     """Lines of the rows of a batch, numbered from `first`: tick, block id, joint values, tool pose."""
     tails = texts_of_rows(np.concatenate([batch.q, batch.tool], axis=1), b", ")
-    heads = zip(count(first), batch.ticks.tolist(), batch.block.tolist(), tails, strict=False)
-    return b"".join([b"%d, 900, %d, %d, %b ;\n" % head for head in heads])
+    numbers = texts_of(np.arange(first, first + len(batch.ticks)))
+    ticks, block = texts_of(batch.ticks), texts_of(batch.block)
+    return rows_of(numbers, MARK, ticks, b", ", block, b", ", tails, LINE_END)
 
 
 def parse_samples(lines: list[bytes], first: int, joints: int) -> RowBatch:
