@@ -148,6 +148,8 @@ def tells_the_truth(found: Diagnostic) -> bool:
     """Whether what is told to come too near is nearer than what is told to be kept."""
     if found.code not in {"IRL560", "IRL561"}:
         return True
+    if str(found.data["distance"]) == f"less than {found.data['floor']}":
+        return True
     distance, floor = (float(str(found.data[word]).split()[0]) for word in ("distance", "floor"))
     return distance < floor
 

@@ -64,6 +64,7 @@ def test_what_is_kept_is_more_than_what_would_be_left(room, kept) -> None:
         (0.0199999, 0.02, ("19.9999 mm", "20 mm")),
         (-0.001, 0.0, ("-1 mm (they overlap)", "0 mm")),
         (0.02 - 1.1e-6, 0.02, ("19.999 mm", "20 mm")),
+        (0.02 - 1e-15, 0.02, ("less than 20 mm", "20 mm")),
     ],
 )
 def test_digits_tell_distances_apart(distance, floor, words) -> None:

@@ -29,12 +29,18 @@ def apart(distance: float, digits: int = 4) -> str:
 
 
 def told(clearance: Clearance, found: TooNear) -> dict[str, Any]:
-    """What messages say of a pair, with as many digits as tell both distances apart."""
+    """What messages say of a pair, with as many digits as tell both distances apart.
+
+    A pair that has come down to what it keeps can come no nearer: then the least is told.
+    """
     pair = clearance.distances.pairs[found.pair]
     for digits in range(4, 10):
         distance, floor = apart(found.distance, digits), apart(found.floor, digits)
         if distance != floor:
             break
+    else:
+        floor = apart(found.floor)
+        distance = f"less than {floor}"
     return {"pair": told_pair(pair), "distance": distance, "floor": floor}
 
 
