@@ -1,0 +1,101 @@
+"""How far a tool may stand off the pose that is asked for: bands of its coordinates in that pose."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, pi
+
+import numpy as np
+
+from irlx.streams.joint_stream import Floats
+from irlx.verifier.geometry.rotations import about_axis, angle_between
+
+ROUNDS = 200
+"""Most rounds in which the place on a way is sought off which a shifted tool stands."""
+
+SETTLED = 1e-13
+"""What such a round may still move the place by, m."""
+
+
+@dataclass(frozen=True)
+class Allowance:
+    """Bands (6,): m along x, y, z, then rad about x, y, z, in the frame of the pose asked for.
+
+    A tool at Trans(x, y, z) Rz(c) Ry(b) Rx(a) in that frame is within them where |x| <= dx and so on; turns
+    of half a turn and more are free.
+    """
+
+    bands: tuple[float, float, float, float, float, float]
+
+    @property
+    def shifts(self) -> bool:
+        """Whether a displacement is allowed."""
+        return any(band > 0.0 for band in self.bands[:3])
+
+    @property
+    def turns(self) -> bool:
+        """Whether a turn is allowed."""
+        return any(band > 0.0 for band in self.bands[3:])
+
+    def turned_off(self, actual: Floats, asked: Floats) -> Floats:
+        """Angle (...) rad of what is left between rotations (..., 3, 3) once the bands are used."""
+        if not self.turns:
+            return angle_between(actual, asked)
+        return self._turned(actual, asked)[1]
+
+    def shifted_off(self, offsets: Floats) -> Floats:
+        """What is left (R, 3) m of displacements in the frame of the pose asked for."""
+        most = np.array(self.bands[:3])
+        return np.asarray(offsets - np.clip(offsets, -most, most))
+
+    def excess(self, position: Floats, rotation: Floats, asked: tuple[Floats, Floats]) -> Floats:
+        """How far (R,) the coordinates that have a band pass it, m or rad: of all the largest.
+
+        `position` (R, 3) and `rotation` (R, 3, 3) are of the tool, `asked` of the poses asked for.
+        """
+        offsets = np.einsum("rji,rj->ri", asked[1], position - asked[0])
+        values = np.hstack([offsets, self._turned(rotation, asked[1])[0]])
+        banded = np.array(self.bands) > 0.0
+        passed = np.abs(values) - self._most
+        return np.asarray(np.max(np.where(banded, passed, -inf), axis=1, initial=-inf))
+
+    @property
+    def _most(self) -> Floats:
+        most = np.array(self.bands)
+        most[3:][most[3:] >= pi] = inf
+        return most
+
+    def _turned(self, actual: Floats, asked: Floats) -> tuple[Floats, Floats]:
+        """Turns (R, 3) about x, y, z, and the angle (R,) that is left of them.
+
+        R = Rz(c) Ry(b) Rx(a) has two triples of angles; that counts which leaves less.
+        """
+        between = np.swapaxes(asked, -1, -2) @ actual
+        a = np.arctan2(between[..., 2, 1], between[..., 2, 2])
+        across = np.hypot(between[..., 2, 1], between[..., 2, 2])
+        b = np.arctan2(-between[..., 2, 0], across)
+        c = np.arctan2(between[..., 1, 0], between[..., 0, 0])
+        most = self._most[3:]
+        found = []
+        for turns in (np.stack([a, b, c], axis=-1), np.stack([_whole(a), _whole(-b), _whole(c)], axis=-1)):
+            kept = np.clip(turns, -most, most)
+            left = angle_between(between, _from_turns(kept))
+            found.append((turns, left))
+        better = found[1][1] < found[0][1]
+        return np.where(better[..., None], found[1][0], found[0][0]), np.minimum(found[0][1], found[1][1])
+
+
+EXACT = Allowance((0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+"""The tool stands at the pose that is asked for."""
+
+
+def _whole(angles: Floats) -> Floats:
+    """Half a turn further, between half a turn back and forward."""
+    return np.asarray(np.mod(angles + 2.0 * pi, 2.0 * pi) - pi)
+
+
+def _from_turns(turns: Floats) -> Floats:
+    """Rz(c) Ry(b) Rx(a), (R, 3, 3), of angles (R, 3) about x, y, z."""
+    flat = turns.reshape(-1, 3)
+    x, y, z = (about_axis(axis, flat[:, number]) for number, axis in enumerate(np.eye(3)))
+    return np.asarray((z @ y @ x).reshape(*turns.shape[:-1], 3, 3))
