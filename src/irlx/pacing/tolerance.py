@@ -27,7 +27,7 @@ from irlx.pacing.postures import posture_of_pose
 from irlx.pacing.rows import MotionRows
 from irlx.pacing.situation import Situation
 from irlx.pacing.virtual_constraint import VirtualConstraint
-from irlx.promises import PATH_ORIENTATION, PATH_POSITION
+from irlx.promises import TOLERANCE_BAND
 from irlx.robot.description import COORDINATES, Joint, JointKind, RobotDescription
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
@@ -72,7 +72,7 @@ def start_of(situation: Situation, clause: ToleranceClause | None) -> Pose:
 class StandingOff(NamedTuple):
     """Coordinates (6,) of a tool pose in the programmed one: m, and rad about x, y, z as in the clause.
 
-    `inside`: all are within the bands, those without a band within what a path may be off.
+    `inside`: all are within the bands, to what rounding may pretend.
     """
 
     values: Array
@@ -85,16 +85,15 @@ def standing_off(
     """How a tool pose stands off the programmed one: of two ways to tell its turns, the nearer one."""
     apart = pin.SE3(*programmed).actInv(pin.SE3(*tool))
     bands = np.array(clause.bands)
-    exact = np.array([PATH_POSITION] * 3 + [PATH_ORIENTATION] * 3)
     counts = np.array([name in kinematics.task.coordinates for name in COORDINATES])
-    allowed = np.where(counts, np.where(bands > 0.0, bands, exact), inf)
+    allowed = np.where(counts, bands, inf)
     allowed[3:][allowed[3:] >= FREE_TURN] = inf
     rpy = pin.rpy.matrixToRpy(apart.rotation)
     ways = (rpy, np.remainder(np.array([rpy[0], -rpy[1], rpy[2]]) + 2.0 * pi, 2.0 * pi) - pi)
     found = [np.concatenate([apart.translation, turns]) for turns in ways]
     beyond = [float(np.max(np.maximum(np.abs(values) - allowed, 0.0))) for values in found]
     nearer = int(np.argmin(beyond))
-    return StandingOff(found[nearer], beyond[nearer] == 0.0)
+    return StandingOff(found[nearer], beyond[nearer] <= TOLERANCE_BAND)
 
 
 def widened(

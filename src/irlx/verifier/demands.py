@@ -18,7 +18,7 @@ from irlx.blocks import (
     SignalBlock,
     Target,
 )
-from irlx.promises import JOINT_LINE, PATH_ORIENTATION, PATH_POSITION
+from irlx.promises import JOINT_LINE, PATH_ORIENTATION, PATH_POSITION, TOLERANCE_BAND
 from irlx.robot.description import RobotDescription
 from irlx.streams.joint_stream import Floats
 from irlx.verifier.geometry.allowance import EXACT, Allowance
@@ -159,10 +159,10 @@ def _goes_on(before: Demand, move: MoveRows, start: Place, tools: ToolsInForce) 
 
 
 def _within(allowance: Allowance, asked: Pose, reached: Pose) -> bool:
-    """Whether a pose is as far off another one as it may be, to what paths may be off."""
+    """Whether a pose is as far off another one as it may be, to rounding."""
     left = allowance.shifted_off((asked[1].T @ (reached[0] - asked[0]))[None])
-    near = float(np.linalg.norm(left)) <= PATH_POSITION
-    return near and float(allowance.turned_off(reached[1][None], asked[1][None])[0]) <= PATH_ORIENTATION
+    near = float(np.linalg.norm(left)) <= TOLERANCE_BAND
+    return near and float(allowance.turned_off(reached[1][None], asked[1][None])[0]) <= TOLERANCE_BAND
 
 
 def _crossing(demands: list[Demand]) -> list[Demand]:

@@ -4,17 +4,32 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf, pi
+from typing import Protocol
 
 import numpy as np
 
 from irlx.streams.joint_stream import Floats
 from irlx.verifier.geometry.rotations import about_axis, angle_between
 
-ROUNDS = 200
-"""Most rounds in which the place on a way is sought off which a shifted tool stands."""
+ROUNDS = 50
+"""Most steps by which the place on a way is sought off which a shifted tool stands."""
 
-SETTLED = 1e-13
-"""What such a round may still move the place by, m."""
+SETTLED = 1e-14
+"""A step that is this short, m, is the last one."""
+
+
+class Way(Protocol):
+    """A way of the tool."""
+
+    @property
+    def reach(self) -> float:
+        """Length of the way of the position, m."""
+
+    def nearest(self, positions: Floats) -> Floats:
+        """Way (R,) m to the points nearest to positions (R, 3)."""
+
+    def at(self, way: Floats) -> tuple[Floats, Floats, Floats]:
+        """Positions (R, 3), orientations (R, 3, 3) and unit tangents (R, 3) after ways (R,) m."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +62,26 @@ class Allowance:
         """What is left (R, 3) m of displacements in the frame of the pose asked for."""
         most = np.array(self.bands[:3])
         return np.asarray(offsets - np.clip(offsets, -most, most))
+
+    def asked(self, way: Way, positions: Floats) -> tuple[Floats, Floats]:
+        """The poses (R, 3), (R, 3, 3) of a way off which tools at positions (R, 3) stand.
+
+        Of displacements along the way the bands leave the place open: it is the nearest to the point nearest
+        to the tool where what is beyond the bands is least. With e the displacement and g the tangent in the
+        frame of the pose that is the root of g' left(e - g ds), a rising function, found by Newton steps.
+        """
+        along = way.nearest(positions)
+        for _ in range(ROUNDS if self.shifts else 0):
+            points, rotations, tangents = way.at(along)
+            left = self.shifted_off(np.einsum("rji,rj->ri", rotations, positions - points))
+            forward = np.einsum("rji,rj->ri", rotations, tangents)
+            size = np.sum(np.where(left != 0.0, forward**2, 0.0), axis=1)
+            step = np.sum(forward * left, axis=1) / np.where(size > 0.0, size, 1.0)
+            moved = np.clip(along + step, 0.0, way.reach)
+            if np.max(np.abs(moved - along), initial=0.0) <= SETTLED:
+                break
+            along = moved
+        return way.at(along)[:2]
 
     def excess(self, position: Floats, rotation: Floats, asked: tuple[Floats, Floats]) -> Floats:
         """How far (R,) the coordinates that have a band pass it, m or rad: of all the largest.

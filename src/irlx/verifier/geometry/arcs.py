@@ -52,6 +52,11 @@ class ArcShape:
         along, rise = np.sin(angles)[:, None], 2.0 * np.sin(0.5 * angles)[:, None] ** 2
         return np.asarray(self.start + (along * self.forward + rise * self.inward) / self.flatness)
 
+    def tangents(self, angles: Floats) -> Floats:
+        """Unit tangents (R, 3) after angles (R,), rad."""
+        cosine, sine = np.cos(angles)[:, None], np.sin(angles)[:, None]
+        return np.asarray(cosine * self.forward + sine * self.inward)
+
     @property
     def end(self) -> Floats:
         """Position (3,) m at the end of the way."""
@@ -133,20 +138,34 @@ class ArcWay:
             travel, off_turn = float(inside[-1]), np.zeros(len(inside))
         return PathDeviation(off_circle, off_turn, inside / shape.flatness, travel / shape.flatness, False)
 
-    def nearest(self, positions: Floats) -> tuple[Floats, Floats]:
-        """The poses (R, 3), (R, 3, 3) on the way that are nearest to the next positions (R, 3)."""
+    @property
+    def reach(self) -> float:
+        """Length of the way of the position, m."""
+        return self.length
+
+    def nearest(self, positions: Floats) -> Floats:
+        """Way (R,) m to the points nearest to the next positions (R, 3)."""
         if self._chord is not None:
             return self._chord.nearest(positions)
         before = self._raw, self._angle
-        inside = np.clip(self._rounds(self._shape.angles(positions)), 0.0, self._shape.travel)
+        angles = np.clip(self._rounds(self._shape.angles(positions)), 0.0, self._shape.travel)
         self._raw, self._angle = before
-        share, part = inside / self._shape.travel, self._shape.via / self._shape.travel
+        return np.asarray(angles / self._shape.flatness)
+
+    def at(self, way: Floats) -> tuple[Floats, Floats, Floats]:
+        """Positions (R, 3), orientations (R, 3, 3) and unit tangents (R, 3) after ways (R,) m."""
+        shape = self._shape
+        if self._chord is not None:
+            return self._chord.at(way)
+        angles = way * shape.flatness
+        points, tangents = shape.points(angles), shape.tangents(angles)
+        share, part = angles / shape.travel, shape.via / shape.travel
         if len(self._turns) == 1:
-            return self._shape.points(inside), self._turns[0].at(share)
+            return points, self._turns[0].at(share), tangents
         to_via, from_via = self._turns
         early = to_via.at(eased(np.minimum(share / part, 1.0)))
         late = from_via.at(1.0 - eased(np.minimum((1.0 - share) / (1.0 - part), 1.0)))
-        return self._shape.points(inside), np.where((inside < self._shape.via)[:, None, None], early, late)
+        return points, np.where((angles < shape.via)[:, None, None], early, late), tangents
 
     def _off_turn(self, inside: Floats, rotations: Floats) -> Floats:
         share = inside / self._shape.travel

@@ -81,16 +81,27 @@ class LineWay:
         best, self._turns = settled([deviation.orientation for deviation in found], self._turns)
         return found[best]
 
-    def nearest(self, positions: Floats) -> Pose:
-        """The poses (R, 3), (R, 3, 3) on the way that are nearest to positions (R, 3)."""
-        share = np.zeros(len(positions))
-        if self.distance > 0.0:
-            share = np.clip((positions - self._start[0]) @ self._step / self.distance**2, 0.0, 1.0)
+    @property
+    def reach(self) -> float:
+        """Length of the way of the position, m."""
+        return self.distance
+
+    def nearest(self, positions: Floats) -> Floats:
+        """Way (R,) m to the points nearest to positions (R, 3)."""
+        if self.distance == 0.0:
+            return np.zeros(len(positions))
+        return np.clip((positions - self._start[0]) @ self._step / self.distance, 0.0, self.distance)
+
+    def at(self, way: Floats) -> tuple[Floats, Floats, Floats]:
+        """Positions (R, 3), orientations (R, 3, 3) and unit tangents (R, 3) after ways (R,) m."""
         turn = self._turns[0]
         angle = float(np.linalg.norm(turn))
         axis = turn / angle if angle > 0.0 else np.array([1.0, 0.0, 0.0])
-        points = self._start[0] + share[:, None] * self._step
-        return points, self._start[1] @ about_axis(axis, share * angle)
+        forward = self._step / self.distance if self.distance > 0.0 else np.zeros(3)
+        share = way / self.distance if self.distance > 0.0 else way
+        points = self._start[0] + way[:, None] * forward
+        tangents = np.broadcast_to(forward, points.shape)
+        return points, self._start[1] @ about_axis(axis, share * angle), tangents
 
     def _from(self, turn: Floats, positions: Floats, rotations: Floats) -> PathDeviation:
         angle = float(np.linalg.norm(turn))

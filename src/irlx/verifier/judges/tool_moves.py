@@ -22,7 +22,7 @@ from irlx.verifier.chain_legs import NoCurve, Unplaced, legs_of
 from irlx.verifier.demands import Demand, allowance_of
 from irlx.verifier.evidence import Evidence
 from irlx.verifier.findings.finding import Check
-from irlx.verifier.geometry.allowance import EXACT, ROUNDS, SETTLED, Allowance
+from irlx.verifier.geometry.allowance import EXACT, Allowance
 from irlx.verifier.geometry.paths import LineWay
 from irlx.verifier.geometry.rotations import angle_between
 from irlx.verifier.judges.chained_moves import HANDS_OVER, ChainRows, ChainTallies
@@ -193,16 +193,8 @@ class ToolMoveChecks:
         assert course.way is not None
         here = stretch.after
         positions, rotations = rows.positions[here], rows.rotations[here]
-        places = positions
-        for _ in range(ROUNDS):
-            asked = course.way.nearest(places)
-            offsets = np.einsum("rji,rj->ri", asked[1], positions - asked[0])
-            used = offsets - allowance.shifted_off(offsets)
-            nearer = positions - np.einsum("rij,rj->ri", asked[1], used)
-            moved, places = np.max(np.abs(nearer - places), initial=0.0), nearer
-            if moved <= SETTLED:
-                break
-        left = allowance.shifted_off(offsets)
+        asked = allowance.asked(course.way, positions)
+        left = allowance.shifted_off(np.einsum("rji,rj->ri", asked[1], positions - asked[0]))
         self._path[0].add(stretch.rows, np.linalg.norm(left, axis=1), PATH_POSITION)
         turned = allowance.turned_off(rotations, asked[1])
         self._path[1].add(stretch.rows, turned, PATH_ORIENTATION)
@@ -212,7 +204,7 @@ class ToolMoveChecks:
         assert course.way is not None
         if allowance.turns:
             tool = rows.positions[stretch.after], rows.rotations[stretch.after]
-            self._add_bands(stretch.rows, allowance, tool, course.way.nearest(tool[0]))
+            self._add_bands(stretch.rows, allowance, tool, allowance.asked(course.way, tool[0]))
         found = course.way.deviation(rows.positions[stretch.after], rows.rotations[stretch.after])
         self._path[0].add(stretch.rows, found.position, PATH_POSITION)
         self._path[1].add(stretch.rows, found.orientation, PATH_ORIENTATION)
