@@ -9,13 +9,16 @@ from typing import Protocol
 import numpy as np
 
 from irlx.streams.joint_stream import Floats
-from irlx.verifier.geometry.rotations import about_axis, angle_between
+from irlx.verifier.geometry.rotations import about_axis, angle_between, rotation_vectors
 
 ROUNDS = 50
 """Most steps by which the place on a way is sought off which a shifted tool stands."""
 
-SETTLED = 1e-14
+SETTLED = 1e-13
 """A step that is this short, m, is the last one."""
+
+ASIDE = 1e-8
+"""Way, m, by which the change of what is beyond the bands is told."""
 
 
 class Way(Protocol):
@@ -28,8 +31,8 @@ class Way(Protocol):
     def nearest(self, positions: Floats) -> Floats:
         """Way (R,) m to the points nearest to positions (R, 3)."""
 
-    def at(self, way: Floats) -> tuple[Floats, Floats, Floats]:
-        """Positions (R, 3), orientations (R, 3, 3) and unit tangents (R, 3) after ways (R,) m."""
+    def at(self, way: Floats) -> tuple[Floats, Floats]:
+        """Positions (R, 3) and orientations (R, 3, 3) after ways (R,) m."""
 
 
 @dataclass(frozen=True)
@@ -63,25 +66,32 @@ class Allowance:
         most = np.array(self.bands[:3])
         return np.asarray(offsets - np.clip(offsets, -most, most))
 
-    def asked(self, way: Way, positions: Floats) -> tuple[Floats, Floats]:
-        """The poses (R, 3), (R, 3, 3) of a way off which tools at positions (R, 3) stand.
+    def asked(self, way: Way, positions: Floats, rotations: Floats) -> tuple[Floats, Floats]:
+        """Poses (R, 3), (R, 3, 3) of a way off which tools at positions (R, 3), rotations (R, 3, 3) stand.
 
-        Of displacements along the way the bands leave the place open: it is the nearest to the point nearest
-        to the tool where what is beyond the bands is least. With e the displacement and g the tangent in the
-        frame of the pose that is the root of g' left(e - g ds), a rising function, found by Newton steps.
+        Displacements along the way leave the place open: from the point nearest to the tool it is sought by
+        steps of Gauss and Newton where least is beyond the bands, 1 rad counting like 1 m.
         """
         along = way.nearest(positions)
         for _ in range(ROUNDS if self.shifts else 0):
-            points, rotations, tangents = way.at(along)
-            left = self.shifted_off(np.einsum("rji,rj->ri", rotations, positions - points))
-            forward = np.einsum("rji,rj->ri", rotations, tangents)
-            size = np.sum(np.where(left != 0.0, forward**2, 0.0), axis=1)
-            step = np.sum(forward * left, axis=1) / np.where(size > 0.0, size, 1.0)
+            left = self._left(way, along, positions, rotations)
+            aside = np.where(along + ASIDE <= way.reach, along + ASIDE, along - ASIDE)
+            slope = (self._left(way, aside, positions, rotations) - left) / (aside - along)[:, None]
+            size = np.sum(slope**2, axis=1)
+            step = -np.sum(slope * left, axis=1) / np.where(size > 0.0, size, 1.0)
             moved = np.clip(along + step, 0.0, way.reach)
             if np.max(np.abs(moved - along), initial=0.0) <= SETTLED:
                 break
             along = moved
-        return way.at(along)[:2]
+        return way.at(along)
+
+    def _left(self, way: Way, along: Floats, positions: Floats, rotations: Floats) -> Floats:
+        """What is beyond the bands (R, 6), m and rad, at ways (R,)."""
+        points, asked = way.at(along)
+        shifted = self.shifted_off(np.einsum("rji,rj->ri", asked, positions - points))
+        kept = self._kept(self._turned(rotations, asked)[0])
+        between = np.swapaxes(asked, 1, 2) @ rotations
+        return np.hstack([shifted, rotation_vectors(np.swapaxes(kept, 1, 2) @ between)])
 
     def excess(self, position: Floats, rotation: Floats, asked: tuple[Floats, Floats]) -> Floats:
         """How far (R,) the coordinates that have a band pass it, m or rad: of all the largest.
@@ -93,6 +103,11 @@ class Allowance:
         banded = np.array(self.bands) > 0.0
         passed = np.abs(values) - self._most
         return np.asarray(np.max(np.where(banded, passed, -inf), axis=1, initial=-inf))
+
+    def _kept(self, turns: Floats) -> Floats:
+        """Rotations (R, 3, 3) by turns (R, 3) about x, y, z, as far as the bands let them."""
+        most = self._most[3:]
+        return _from_turns(np.clip(turns, -most, most))
 
     @property
     def _most(self) -> Floats:
@@ -110,11 +125,9 @@ class Allowance:
         across = np.hypot(between[..., 2, 1], between[..., 2, 2])
         b = np.arctan2(-between[..., 2, 0], across)
         c = np.arctan2(between[..., 1, 0], between[..., 0, 0])
-        most = self._most[3:]
         found = []
         for turns in (np.stack([a, b, c], axis=-1), np.stack([_whole(a), _whole(-b), _whole(c)], axis=-1)):
-            kept = np.clip(turns, -most, most)
-            left = angle_between(between, _from_turns(kept))
+            left = angle_between(between, self._kept(turns))
             found.append((turns, left))
         better = found[1][1] < found[0][1]
         return np.where(better[..., None], found[1][0], found[0][0]), np.minimum(found[0][1], found[1][1])

@@ -52,11 +52,6 @@ class ArcShape:
         along, rise = np.sin(angles)[:, None], 2.0 * np.sin(0.5 * angles)[:, None] ** 2
         return np.asarray(self.start + (along * self.forward + rise * self.inward) / self.flatness)
 
-    def tangents(self, angles: Floats) -> Floats:
-        """Unit tangents (R, 3) after angles (R,), rad."""
-        cosine, sine = np.cos(angles)[:, None], np.sin(angles)[:, None]
-        return np.asarray(cosine * self.forward + sine * self.inward)
-
     @property
     def end(self) -> Floats:
         """Position (3,) m at the end of the way."""
@@ -152,20 +147,20 @@ class ArcWay:
         self._raw, self._angle = before
         return np.asarray(angles / self._shape.flatness)
 
-    def at(self, way: Floats) -> tuple[Floats, Floats, Floats]:
-        """Positions (R, 3), orientations (R, 3, 3) and unit tangents (R, 3) after ways (R,) m."""
+    def at(self, way: Floats) -> tuple[Floats, Floats]:
+        """Positions (R, 3) and orientations (R, 3, 3) after ways (R,) m."""
         shape = self._shape
         if self._chord is not None:
             return self._chord.at(way)
         angles = way * shape.flatness
-        points, tangents = shape.points(angles), shape.tangents(angles)
+        points = shape.points(angles)
         share, part = angles / shape.travel, shape.via / shape.travel
         if len(self._turns) == 1:
-            return points, self._turns[0].at(share), tangents
+            return points, self._turns[0].at(share)
         to_via, from_via = self._turns
         early = to_via.at(eased(np.minimum(share / part, 1.0)))
         late = from_via.at(1.0 - eased(np.minimum((1.0 - share) / (1.0 - part), 1.0)))
-        return points, np.where((angles < shape.via)[:, None, None], early, late), tangents
+        return points, np.where((angles < shape.via)[:, None, None], early, late)
 
     def _off_turn(self, inside: Floats, rotations: Floats) -> Floats:
         share = inside / self._shape.travel

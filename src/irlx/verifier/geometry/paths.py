@@ -92,16 +92,15 @@ class LineWay:
             return np.zeros(len(positions))
         return np.clip((positions - self._start[0]) @ self._step / self.distance, 0.0, self.distance)
 
-    def at(self, way: Floats) -> tuple[Floats, Floats, Floats]:
-        """Positions (R, 3), orientations (R, 3, 3) and unit tangents (R, 3) after ways (R,) m."""
+    def at(self, way: Floats) -> Pose:
+        """Positions (R, 3) and orientations (R, 3, 3) after ways (R,) m."""
         turn = self._turns[0]
         angle = float(np.linalg.norm(turn))
         axis = turn / angle if angle > 0.0 else np.array([1.0, 0.0, 0.0])
         forward = self._step / self.distance if self.distance > 0.0 else np.zeros(3)
         share = way / self.distance if self.distance > 0.0 else way
         points = self._start[0] + way[:, None] * forward
-        tangents = np.broadcast_to(forward, points.shape)
-        return points, self._start[1] @ about_axis(axis, share * angle), tangents
+        return points, self._start[1] @ about_axis(axis, share * angle)
 
     def _from(self, turn: Floats, positions: Floats, rotations: Floats) -> PathDeviation:
         angle = float(np.linalg.norm(turn))

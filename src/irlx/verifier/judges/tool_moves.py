@@ -193,7 +193,7 @@ class ToolMoveChecks:
         assert course.way is not None
         here = stretch.after
         positions, rotations = rows.positions[here], rows.rotations[here]
-        asked = allowance.asked(course.way, positions)
+        asked = allowance.asked(course.way, positions, rotations)
         left = allowance.shifted_off(np.einsum("rji,rj->ri", asked[1], positions - asked[0]))
         self._path[0].add(stretch.rows, np.linalg.norm(left, axis=1), PATH_POSITION)
         turned = allowance.turned_off(rotations, asked[1])
@@ -204,7 +204,7 @@ class ToolMoveChecks:
         assert course.way is not None
         if allowance.turns:
             tool = rows.positions[stretch.after], rows.rotations[stretch.after]
-            self._add_bands(stretch.rows, allowance, tool, allowance.asked(course.way, tool[0]))
+            self._add_bands(stretch.rows, allowance, tool, allowance.asked(course.way, *tool))
         found = course.way.deviation(rows.positions[stretch.after], rows.rotations[stretch.after])
         self._path[0].add(stretch.rows, found.position, PATH_POSITION)
         self._path[1].add(stretch.rows, found.orientation, PATH_ORIENTATION)
