@@ -6,6 +6,7 @@ that are written down here.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -15,6 +16,8 @@ from scipy.spatial.transform import Rotation
 
 import irlx
 from irlx.cell.load import load_cell
+from irlx.streams import BlockRecord, JointStream, read_stream
+from irlx.verifier import verify_stream
 from irlx.verifier.geometry.forward import forward
 
 pytestmark = [pytest.mark.req("LANG-66"), pytest.mark.req("TRF-21")]
@@ -206,6 +209,30 @@ def test_an_explained_tick_names_the_virtual_joint(tmp_path) -> None:
 def test_what_closes_the_way_names_the_band(run) -> None:
     with pytest.raises(irlx.RunError, match=r"IRL52[0-4].*TOLERANCE db|TOLERANCE da"):
         run(f"FREEZESTART 4;\n{square('WITH TOLERANCE (0, 0, 0, 3, 3, 0)')}FREEZEEND;\n")
+
+
+def narrower(stream: JointStream, part: int) -> JointStream:
+    """A stream whose moves were asked for nine tenths of a band."""
+
+    def changed(record: BlockRecord) -> BlockRecord:
+        clause = record.block.tolerance
+        bands = tuple(band * (0.9 if number == part else 1.0) for number, band in enumerate(clause.bands))
+        return replace(record, block=replace(record.block, tolerance=replace(clause, bands=bands)))
+
+    return replace(stream, records=tuple(changed(record) for record in stream.records))
+
+
+@pytest.mark.req("STR-06")
+@pytest.mark.parametrize(
+    ("bands", "part"), [((0, 0, 0, 0, 3, 0), 4), ((0, 0, 2, 0, 0, 0), 2), ((0, 2, 0, 1, 1, 1), 5)]
+)
+def test_the_verifier_finds_a_band_passed(run, tmp_path, bands: tuple[int, ...], part: int) -> None:
+    found = run(square(f"WITH TOLERANCE {bands}"))
+    found.save(tmp_path / "p.npz")
+    stream = read_stream(tmp_path / "p.npz")
+    assert verify_stream(stream, run.robot()).passed
+    report = verify_stream(narrower(stream, part), run.robot())
+    assert "tolerance bands" in {check.name for check in report.failed}
 
 
 @pytest.mark.parametrize("name", ["free_turn", "free_turn_fixed"])

@@ -267,16 +267,7 @@ class Pacer:
         place = self.locate(block.origin)
         if isinstance(block, WaitBlock | PauseBlock):
             return self._wait(block, place)
-        if isinstance(block, LimitSwitchBlock):
-            self.warnings += check_limit(block, self._robot, self.setup.limits, self.q, place)
-        if isinstance(block, FreezeBlock):
-            check_frozen(block, self._robot, place)
-        if isinstance(block, CriterionBlock) and block.choice is not None:
-            from irlx.pacing.criteria import check_criterion
-
-            check_criterion(block.choice, self._robot, place)
-        if isinstance(block, ObstacleBlock):
-            pairs_of(block.name, self.setup.kinematics, self.setup.scene, place)
+        self._check_switch(block, place)
         if isinstance(block, ToolBlock | WeightsBlock):
             self._setup = refitted(self._setup, block, place)
             self._solver = self._new_solver()
@@ -290,6 +281,22 @@ class Pacer:
             names = [obstacle.name for obstacle in self._setup.scene.members(block.name)]
             self.warnings += standing(self._clear_from_now, self.q, names, place)
         return None
+
+    def _check_switch(self, block: Block, place: Place) -> None:
+        """Raise PacingError for a switch that the robot cannot have; warns of what it has otherwise."""
+        if isinstance(block, LimitSwitchBlock):
+            self.warnings += check_limit(block, self._robot, self.setup.limits, self.q, place)
+        if isinstance(block, FreezeBlock):
+            check_frozen(block, self._robot, place)
+            if not self.setup.may_free:
+                options = self.options.after(block, self.q)
+                check_spare(options, self.setup.kinematics, None, self.locate)
+        if isinstance(block, CriterionBlock) and block.choice is not None:
+            from irlx.pacing.criteria import check_criterion
+
+            check_criterion(block.choice, self._robot, place)
+        if isinstance(block, ObstacleBlock):
+            pairs_of(block.name, self.setup.kinematics, self.setup.scene, place)
 
     def _motion(self, moves: list[MoveBlock]) -> Motion:
         """The first motion from stop to stop that moves become."""

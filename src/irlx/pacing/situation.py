@@ -36,7 +36,8 @@ class PacingSetup:
 
     A move may take `max_slow` times as long as programmed, and a tick; `inputs` are what the world says;
     `resolution` tells how finely motions are worked out; motions are planned with `planned_share`
-    of each speed and acceleration limit; `scene` is what stands around.
+    of each speed and acceleration limit; `scene` is what stands around;
+    `may_free`: moves to come may be WITH TOLERANCE.
     """
 
     kinematics: Kinematics
@@ -50,6 +51,7 @@ class PacingSetup:
     resolution: Resolution = EVERY_TICK
     planned_share: float = 1.0
     scene: Scene = field(default_factory=Scene)
+    may_free: bool = False
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ def check_spare(
     """Raise PacingError, IRL347, at FREEZESTART, where more joints are frozen than a motion can spare.
 
     Of the equations that every tick has to meet, those of the tool pose and of constraints, the coordinates
-    that WITH TOLERANCE frees take none. That is only known at the motion.
+    that WITH TOLERANCE frees take none: where the program has any, that is only known at the motion.
     """
     switch = options.frozen_by
     if switch is None:

@@ -118,19 +118,17 @@ class Allowance:
     def _turned(self, actual: Floats, asked: Floats) -> tuple[Floats, Floats]:
         """Turns (R, 3) about x, y, z, and the angle (R,) that is left of them.
 
-        R = Rz(c) Ry(b) Rx(a) has two triples of angles; that counts which leaves less.
+        R = Rz(c) Ry(b) Rx(a) has two triples of angles; that counts which passes the bands by less.
         """
         between = np.swapaxes(asked, -1, -2) @ actual
         a = np.arctan2(between[..., 2, 1], between[..., 2, 2])
         across = np.hypot(between[..., 2, 1], between[..., 2, 2])
         b = np.arctan2(-between[..., 2, 0], across)
         c = np.arctan2(between[..., 1, 0], between[..., 0, 0])
-        found = []
-        for turns in (np.stack([a, b, c], axis=-1), np.stack([_whole(a), _whole(-b), _whole(c)], axis=-1)):
-            left = angle_between(between, self._kept(turns))
-            found.append((turns, left))
-        better = found[1][1] < found[0][1]
-        return np.where(better[..., None], found[1][0], found[0][0]), np.minimum(found[0][1], found[1][1])
+        ways = np.stack([np.stack([a, b, c], axis=-1), _whole(np.stack([a, -b, c], axis=-1))])
+        beyond = np.max(np.abs(ways) - self._most[3:], axis=-1)
+        turns = np.where((beyond[1] < beyond[0])[..., None], ways[1], ways[0])
+        return turns, angle_between(between, self._kept(turns))
 
 
 EXACT = Allowance((0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
