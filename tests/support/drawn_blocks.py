@@ -35,6 +35,7 @@ from irlx.blocks import (
     ReconfigureBlock,
     SignalBlock,
     SignalKind,
+    ToleranceClause,
     ToolBlock,
     WaitBlock,
     WeightsBlock,
@@ -102,6 +103,7 @@ blocks = st.one_of(
         reconfiguration=postures,
         criteria=st.lists(st.builds(CriterionClause, criteria, origins), max_size=2).map(tuple),
         blend=st.none() | blends,
+        tolerance=st.none() | st.builds(ToleranceClause, st.tuples(*[numbers] * 6), origins),
         **common,
     ),
 )

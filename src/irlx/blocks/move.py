@@ -9,6 +9,7 @@ from irlx.blocks.block import Block
 from irlx.blocks.criterion import CriterionClause
 from irlx.blocks.options import LimitClause
 from irlx.blocks.targets import JointTarget, Target
+from irlx.blocks.tolerance import ToleranceClause
 
 
 class MoveKind(str, Enum):
@@ -99,7 +100,7 @@ class MoveBlock(Block):
     the next move allows it, and the inner points of its own path.
     `reconfiguration`: posture to be drawn to on the way, the target's pose being kept (of a CIRCLE with a
     posture for its via point: on the way from there); the cyclic option is off for such a move. `criteria`
-    are added for this move alone.
+    are added for this move alone. `tolerance`: bands within which the tool may stand off its programmed pose.
     """
 
     kind: MoveKind
@@ -110,6 +111,7 @@ class MoveBlock(Block):
     reconfiguration: JointTarget | None = None
     criteria: tuple[CriterionClause, ...] = ()
     blend: Blend | None = None
+    tolerance: ToleranceClause | None = None
 
     @property
     def arc(self) -> ArcCourse | None:

@@ -92,7 +92,7 @@ _TOO_MANY = f"at most {WINDOW} moves are joined"
 def _apart(first: MoveBlock, second: MoveBlock) -> str:
     """Why two moves cannot be joined whatever their geometry, or ''."""
     for move in (first, second):
-        if move.limits or move.criteria:
+        if move.limits or move.criteria or move.tolerance is not None:
             return "a WITH clause holds for one of the two moves alone"
         if move.kind is MoveKind.PTP:
             continue

@@ -51,6 +51,7 @@ from irlx.pacing.nearest_rows import nearest_rows
 from irlx.pacing.notes import Notes
 from irlx.pacing.options import LimitsInForce, Options, SwitchBlock
 from irlx.pacing.path_moves import move_along_path
+from irlx.pacing.posed import Pose
 from irlx.pacing.posture_left import posture_left, why_left
 from irlx.pacing.postures import asked_posture, posture_of_pose
 from irlx.pacing.reconfigure import reconfigured
@@ -58,7 +59,8 @@ from irlx.pacing.refitting import refitted
 from irlx.pacing.rows import MotionRows
 from irlx.pacing.situation import PacingSetup, Situation
 from irlx.pacing.snap import snapped
-from irlx.pacing.switches import check_freeze, check_inside, check_limit
+from irlx.pacing.spare import check_spare
+from irlx.pacing.switches import check_frozen, check_inside, check_limit
 from irlx.pacing.too_near import check_rows, passed_by, standing
 from irlx.pacing.waiting import waited
 from irlx.transform.clearance import Clearance
@@ -88,6 +90,8 @@ class Pacer:
         self._links_checked = False
         self._clearance = kept_clear(setup.kinematics, setup.scene, self.options)
         self._rest: MoveBlock | None = None
+        self._programmed: Pose | None = None
+        """Where the path of the last move ended, if it was one WITH TOLERANCE."""
 
     def _new_solver(self) -> TickSolver:
         """What solves the ticks: roughly in a dry run."""
@@ -145,6 +149,7 @@ class Pacer:
             self.warnings,
             self.notes,
             self._clear_from_now,
+            self._programmed,
         )
 
     @property
@@ -245,7 +250,7 @@ class Pacer:
         situation, place = self._situation, self.locate(move.origin)
         end = posture_beyond(situation, move, situation.in_force(move.limits), place)
         self.tick += ticks_beyond(situation, move, place)
-        self.q = end
+        self.q, self._programmed = end, None
 
     def execute(self, block: Block) -> MotionRows | None:
         """Execute one block; returns the rows of a move (None for a switch or a move of no length).
@@ -262,19 +267,12 @@ class Pacer:
         place = self.locate(block.origin)
         if isinstance(block, WaitBlock | PauseBlock):
             return self._wait(block, place)
-        if isinstance(block, LimitSwitchBlock):
-            self.warnings += check_limit(block, self._robot, self.setup.limits, self.q, place)
-        if isinstance(block, FreezeBlock):
-            check_freeze(block, self._robot, self.setup.kinematics.rows, place)
-        if isinstance(block, CriterionBlock) and block.choice is not None:
-            from irlx.pacing.criteria import check_criterion
-
-            check_criterion(block.choice, self._robot, place)
-        if isinstance(block, ObstacleBlock):
-            pairs_of(block.name, self.setup.kinematics, self.setup.scene, place)
+        self._check_switch(block, place)
         if isinstance(block, ToolBlock | WeightsBlock):
             self._setup = refitted(self._setup, block, place)
             self._solver = self._new_solver()
+        if isinstance(block, ToolBlock):
+            self._programmed = None
         if isinstance(block, SwitchBlock):
             self.options = self.options.after(block, self.q)
         if isinstance(block, ToolBlock | ObstacleBlock):
@@ -283,6 +281,22 @@ class Pacer:
             names = [obstacle.name for obstacle in self._setup.scene.members(block.name)]
             self.warnings += standing(self._clear_from_now, self.q, names, place)
         return None
+
+    def _check_switch(self, block: Block, place: Place) -> None:
+        """Raise PacingError for a switch that the robot cannot have; warns of what it has otherwise."""
+        if isinstance(block, LimitSwitchBlock):
+            self.warnings += check_limit(block, self._robot, self.setup.limits, self.q, place)
+        if isinstance(block, FreezeBlock):
+            check_frozen(block, self._robot, place)
+            if not self.setup.may_free:
+                options = self.options.after(block, self.q)
+                check_spare(options, self.setup.kinematics, None, self.locate)
+        if isinstance(block, CriterionBlock) and block.choice is not None:
+            from irlx.pacing.criteria import check_criterion
+
+            check_criterion(block.choice, self._robot, place)
+        if isinstance(block, ObstacleBlock):
+            pairs_of(block.name, self.setup.kinematics, self.setup.scene, place)
 
     def _motion(self, moves: list[MoveBlock]) -> Motion:
         """The first motion from stop to stop that moves become."""
@@ -296,8 +310,12 @@ class Pacer:
         # A clause may have let a joint out of the switch that holds again now.
         check_inside(self.q, self._robot, in_force.limits, place)
         if block.kind is MoveKind.PTP:
-            return move_joints(situation, moves, in_force)
-        return move_along_path(situation, moves, in_force)
+            motion = move_joints(situation, moves, in_force)
+        else:
+            check_spare(situation.options, self.setup.kinematics, block.tolerance, self.locate)
+            motion = move_along_path(situation, moves, in_force)
+        self._programmed = motion.programmed
+        return motion
 
     def _check_links(self, place: Place) -> None:
         """Before the first motion: whether the robot stands clear of itself."""
@@ -343,6 +361,7 @@ class Pacer:
 
     def _reconfigure(self, block: ReconfigureBlock) -> MotionRows | None:
         place, situation = self.locate(block.origin), self._situation
+        check_spare(situation.options, self.setup.kinematics, None, self.locate)
         in_force = situation.in_force()
         check_inside(self.q, self._robot, in_force.limits, place)
         konf = asked_posture(block.target, situation, in_force, place)

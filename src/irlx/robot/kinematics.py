@@ -90,7 +90,7 @@ class Kinematics:
         tool: pin.SE3 | None = None,
     ) -> None:
         self.description = description
-        self._tool = pin.SE3.Identity() if tool is None else tool
+        self.tool = pin.SE3.Identity() if tool is None else tool
         self.constraints = tuple(constraints)
         self.task = Task(description.coordinates)
         self.model = pin.Model()
@@ -113,7 +113,7 @@ class Kinematics:
 
     def constrained(self, constraints: Sequence[Constraint]) -> Kinematics:
         """The same robot with conditions between its joints."""
-        return Kinematics(self.description, constraints, self._tool)
+        return Kinematics(self.description, constraints, self.tool)
 
     def with_tool(
         self, position: tuple[float, float, float], orientation: tuple[float, float, float, float]
@@ -135,7 +135,7 @@ class Kinematics:
             with suppress(RuntimeError, ValueError):
                 self.model.appendBodyToJoint(parent, _inertia(inertial), in_parent)
         if link == self.description.tip:
-            frame = pin.Frame(link, parent, 0, in_parent * self._tool, pin.FrameType.OP_FRAME)
+            frame = pin.Frame(link, parent, 0, in_parent * self.tool, pin.FrameType.OP_FRAME)
             self._tip_frame = self.model.addFrame(frame)
         for joint in self._children.get(link, []):
             origin = in_parent * placement(joint.xyz, joint.rpy)
