@@ -32,7 +32,7 @@ _SEED = 11
 _ITERATIONS = 200
 _ALIKE = 1e-9
 _WIDE = 100.0
-_REMEMBERED = 64
+_REMEMBERED = 256
 _approaches: OrderedDict[bytes, list[Nearest]] = OrderedDict()
 
 
