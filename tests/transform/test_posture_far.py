@@ -10,10 +10,8 @@ from irlx.pacing.governed_return import governed_reference, share_of_way
 from irlx.pacing.return_way import ReturnWay, return_way
 from irlx.pacing.slowdown.model import Model
 from irlx.robot.limits import JointLimits
-from irlx.transform import posture_search
 from irlx.transform.criteria.posture import Posture
 from irlx.transform.fibre import Fibre
-from irlx.transform.nearest import nearest_in_bounds
 from irlx.transform.posture_search import closest, nearest_approach, nearest_posture
 from irlx.transform.qp.proxqp import ProxQpSolver
 from irlx.transform.step_bounds import StepLimiter
@@ -293,40 +291,6 @@ def test_nearest_approach_to_a_pose_within_reach_leaves_nothing(arm) -> None:
     found = nearest(arm, *arm.kinematics.tool_pose(np.clip(arm.q + 0.2, arm.lower, arm.upper)))
     assert found.distance < 1e-6
     assert found.angle < 1e-6
-
-
-@pytest.mark.req("MOT-05")
-def test_a_search_that_is_remembered_is_that_of_the_same_robot(arm7, koch11, monkeypatch) -> None:
-    """Asked again, nothing is searched; with another target, limit, frozen joint or tool it is."""
-    searched = []
-
-    def counted(*asked):
-        searched.append(asked)
-        return nearest_in_bounds(*asked)
-
-    monkeypatch.setattr(posture_search, "nearest_in_bounds", counted)
-    monkeypatch.setattr(posture_search, "RESTARTS", 1)
-    pose, free = arm7.kinematics.tool_pose(arm7.q + 0.1234), np.ones(7, dtype=bool)
-    narrow, frozen = limits_of(arm7).with_pair("position", arm7.lower + 1e-9, arm7.upper), free.copy()
-    frozen[0] = False
-    tool = arm7.kinematics.with_tool((0.0, 0.0, 1e-9), (0.0, 0.0, 0.0, 1.0))
-    first_time = nearest_approach(arm7.kinematics, *pose, arm7.q, limits_of(arm7), free)
-    assert len(searched) == 2
-    again = nearest_approach(arm7.kinematics, *pose, arm7.q.copy(), limits_of(arm7), free)
-    assert len(searched) == 2
-    assert [one.q.tobytes() for one in again] == [one.q.tobytes() for one in first_time]
-    others = [
-        (arm7.kinematics, pose[0], pose[1] + 1e-12, arm7.q, limits_of(arm7), free),
-        (arm7.kinematics, *pose, arm7.q, narrow, free),
-        (arm7.kinematics, *pose, arm7.q, limits_of(arm7), frozen),
-        (tool, *pose, arm7.q, limits_of(arm7), free),
-        (koch11.kinematics, *pose, koch11.q, limits_of(koch11), np.ones(11, dtype=bool)),
-    ]
-    for count, asked in enumerate(others, 2):
-        nearest_approach(*asked)
-        assert len(searched) == 2 * count
-    with pytest.raises(ValueError, match="read-only"):
-        first_time[0].q[0] = 0.0
 
 
 @pytest.mark.req("MOT-22")

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from collections import OrderedDict
 from dataclasses import dataclass
-from hashlib import sha256
 
 import numpy as np
-import pinocchio as pin
 from numpy.typing import NDArray
 
 from irlx.promises import PATH_ORIENTATION, PATH_POSITION
@@ -32,8 +29,6 @@ _SEED = 11
 _ITERATIONS = 200
 _ALIKE = 1e-9
 _WIDE = 100.0
-_REMEMBERED = 256
-_approaches: OrderedDict[bytes, list[Nearest]] = OrderedDict()
 
 
 @dataclass(frozen=True)
@@ -55,36 +50,12 @@ def nearest_approach(
     """Postures within the position limits that come nearest to a tool pose, one from each start.
 
     Pose in the world: rotation (3, 3), position (3,) m. Starts are q and `RESTARTS` fixed random
-    postures within the limits; frozen joints keep their values. The last searches are remembered: a run asks
-    again what its dry run has asked, and a loop what its first round has.
+    postures within the limits; frozen joints keep their values.
     """
     target = kinematics.target(rotation, position)
     lower, upper = limits.position_lower, limits.position_upper
     starts = _starts(q, limits, free)
-    asked = _question(kinematics, target, starts, limits, free)
-    if asked in _approaches:
-        _approaches.move_to_end(asked)
-    else:
-        found = [nearest_in_bounds(kinematics, target, start, lower, upper, free) for start in starts]
-        for approach in found:
-            approach.q.setflags(write=False)
-        _approaches[asked] = found
-        if len(_approaches) > _REMEMBERED:
-            _approaches.popitem(last=False)
-    return _approaches[asked]
-
-
-def _question(
-    kinematics: Kinematics, target: pin.SE3, starts: list[Array], limits: JointLimits, free: NDArray[np.bool_]
-) -> bytes:
-    """What a search depends on, in short.
-
-    Robots whose differences and matrices are the same bits at all of the starts, most of which are random,
-    are the same robot with the same tool and the same conditions.
-    """
-    seen = [part for start in starts for part in (start, *kinematics.difference(start, target))]
-    arrays = [limits.position_lower, limits.position_upper, free, kinematics.row_scale, *seen]
-    return sha256(b"".join(np.ascontiguousarray(array).tobytes() for array in arrays)).digest()
+    return [nearest_in_bounds(kinematics, target, start, lower, upper, free) for start in starts]
 
 
 def nearest_posture(
