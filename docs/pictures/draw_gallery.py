@@ -23,6 +23,7 @@ from scipy.spatial import ConvexHull
 
 import irlx
 from irlx.cell.load import load_cell
+from irlx.robot.description import JointKind
 from irlx.robot.kinematics import Kinematics
 from irlx.solids.placement import Placement
 from irlx.solids.shape import Box, Capsule, Cone, Cylinder, Shape, Sphere
@@ -40,7 +41,10 @@ FILLED, MIDDLE = np.array([0.90, 0.82]), np.array([0.5, 0.46])
 
 @dataclass(frozen=True)
 class Picture:
-    """What one picture shows; seen from `elevation` and `azimuth`, degrees, at `instants` of the run."""
+    """What one picture shows; seen from `elevation` and `azimuth`, degrees, at `instants` of the run.
+
+    `hands` are links whose ways are drawn beside that of the tool.
+    """
 
     name: str
     program: str
@@ -49,6 +53,7 @@ class Picture:
     elevation: float = 22.0
     azimuth: float = -60.0
     instants: int = 5
+    hands: tuple[str, ...] = ()
 
 
 PICTURES = (
@@ -92,7 +97,9 @@ def draw(picture: Picture) -> None:
             for obstacle in cell.scene.obstacles.values()
             for solid in obstacle.solids
         ]
-        draw_trail(axes, run.tool[:, :3])
+        ways = [run.tool[:, :3], *(way_of(kinematics, run.q, link) for link in picture.hands)]
+        for way in ways:
+            draw_trail(axes, way)
         fit(axes, np.vstack([points for points in drawn if len(points)]))
         figure.text(0.03, 0.94, picture.title, fontsize=15.0, color=INK)
         figure.savefig(HERE / f"gallery_{picture.name}.png")
@@ -119,7 +126,7 @@ def draw_arm(axes: Axes3D, kinematics: Kinematics, q: np.ndarray, share: float) 
     widths = [0.8 if joint.is_prismatic else 2.2 + 1.3 * share for joint in robot.joints]
     drawn = Line3DCollection(lines, colors=[colour], linewidths=widths, capstyle="round", zorder=3 + share)
     axes.add_collection3d(drawn)
-    moving = np.array([frames[joint.child] for joint in robot.axes])
+    moving = np.array([frames[joint.child] for joint in robot.joints if joint.kind is not JointKind.FIXED])
     axes.scatter(*moving.T, s=18.0 + 14.0 * share, color=[colour], depthshade=False, zorder=4 + share)
     return np.array([point for line in lines for point in line])
 
@@ -186,6 +193,11 @@ def ball() -> np.ndarray:
     heights = np.cos(np.linspace(0.0, np.pi, 11))
     rings = [(np.sqrt(max(1.0 - z * z, 0.0)), z) for z in heights]
     return np.array([[r * np.cos(a), r * np.sin(a), z] for r, z in rings for a in CIRCLE[::2]])
+
+
+def way_of(kinematics: Kinematics, q: np.ndarray, link: str) -> np.ndarray:
+    """Positions (N, 3) of a link in the postures q (N, n)."""
+    return np.array([link_frames(kinematics, row)[link].translation for row in q])
 
 
 def draw_trail(axes: Axes3D, points: np.ndarray) -> None:

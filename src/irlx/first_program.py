@@ -169,7 +169,7 @@ def _aside(bare: BareRobot, start: tuple[float, ...]) -> tuple[float, ...]:
 def _size(bare: BareRobot) -> float:
     """Length of the first moves, mm: a share of the arm, of the shortest stroke where only slides move."""
     axes, chain = bare.robot.axes, bare.robot.chain
-    turning = [joint for joint in axes if not joint.is_prismatic]
+    turning = [joint for joint in axes if not joint.is_prismatic and joint in chain]
     arm = 0.0
     if turning:
         arm = sum(float(np.linalg.norm(joint.xyz)) for joint in chain[chain.index(turning[0]) + 1 :])

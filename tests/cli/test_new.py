@@ -10,7 +10,6 @@ import pytest
 import irlx
 from irlx.cell.external import external_section
 from irlx.cell.load import load_cell
-from irlx.cell.packaged import packaged_names
 from irlx.cell.robot_data import robot_data_folder
 
 if sys.version_info >= (3, 11):
@@ -35,12 +34,15 @@ def judged(folder, name):
     return run
 
 
+ROBOTS_ALIKE = ("arm7", "koch11", "mobile8", "planar3", "planar4", "rail6")
+"""Packaged robots with one tip, all of whose joints are driven."""
+
 LONG = {"koch11", "arm7", "rail6"}
 """Robots whose first programs take seconds to run twice."""
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(one, marks=[pytest.mark.slow] * (one in LONG)) for one in packaged_names()]
+    "name", [pytest.param(one, marks=[pytest.mark.slow] * (one in LONG)) for one in ROBOTS_ALIKE]
 )
 def test_a_packaged_robot_by_its_urdf(inside, folder, name):
     """As anybody's URDF: nothing is known of it but the file."""

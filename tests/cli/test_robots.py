@@ -40,6 +40,7 @@ def test_overviews_say_what_cells_of_these_names_have(inside):
         assert robot["axes"] == len(section.start)
         assert (robot["tip"], robot["packaged"]) == (section.tip, robot["name"] in packaged_names())
         assert robot["task"] == (section.task or ["x", "y", "z", "rx", "ry", "rz"])
+        assert robot["slides"] is None or robot["slides"] <= robot["axes"]
         if robot["limits"] is not None:
             assert ("acceleration" in robot["limits"]) == isinstance(section.limits.acceleration, list)
 

@@ -54,7 +54,7 @@ def _robot(bare: BareRobot, choices: CellChoices) -> list[str]:
         _line(f"model = {_text(choices.model)}", what),
         _line(f"tip = {_text(robot.tip)}", "the link that moves address"),
     ]
-    if robot.coordinates != COORDINATES:
+    if robot.coordinates != COORDINATES and not bare.has_name:
         task = f"task = [{', '.join(map(_text, robot.coordinates))}]"
         lines.append(_line(task, "what moves ask for, in the frame of the tip: the rest no joint moves"))
     lines += _wrapped("# Axes, from base to tip: ", joints)

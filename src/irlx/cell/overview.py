@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from importlib.resources import files
 from math import isfinite
 from typing import Any
 
 from irlx.cell.frame_names import cell_table
 from irlx.cell.robot_data import robot_data_folder
-from irlx.robot.description import COORDINATES, RobotDescription
+from irlx.robot.description import COORDINATES, Joint, RobotDescription
 from irlx.robot.urdf import read_urdf
 
 _ROBOTS = files("irlx.cell") / "robots"
@@ -72,24 +72,32 @@ def _overview(
 ) -> RobotOverview:
     sentence = _SENTENCE.match(" ".join(about.split()))
     words = sentence[1] if sentence else ""
-    task = tuple(table.get("task", COORDINATES))
+    # Turns that are left to the joints are not asked for.
+    task = tuple(name for name in table.get("task", COORDINATES) if name not in table.get("free", ()))
     tip = str(table.get("tip", ""))
     if text is None:
         return RobotOverview(name, packaged, False, len(table.get("start", ())), None, tip, task, None, words)
     robot = read_urdf(text, table.get("tip"), dict.fromkeys(table.get("locked", {}), 0.0))
-    slides = sum(joint.is_prismatic for joint in robot.axes)
-    limits = tuple(kind for kind in _KINDS if _is_known(kind, table.get("limits", {}), robot))
-    return RobotOverview(name, packaged, True, len(robot.axes), slides, robot.tip, task, limits, words)
+    axes = _axes(robot, table)
+    slides = sum(joint.is_prismatic for joint in axes)
+    limits = tuple(kind for kind in _KINDS if _is_known(kind, table.get("limits", {}), axes))
+    return RobotOverview(name, packaged, True, len(axes), slides, robot.tip, task, limits, words)
 
 
-def _is_known(kind: str, limits: Mapping[str, Any], robot: RobotDescription) -> bool:
+def _axes(robot: RobotDescription, table: Mapping[str, Any]) -> tuple[Joint, ...]:
+    """Joints that move the tip or another hand, each once."""
+    ends = dict.fromkeys((robot.tip, *table.get("hands", ())))
+    return tuple(dict.fromkeys(joint for end in ends for joint in replace(robot, tip=end).axes))
+
+
+def _is_known(kind: str, limits: Mapping[str, Any], axes: Sequence[Joint]) -> bool:
     """Whether any axis has a limit of a kind, by the robot's own cell or its URDF."""
     if kind in limits:
         given = limits[kind]
         return isinstance(given, list) and any(entry is not False for entry in given)
     if kind == "position":
-        return any(isfinite(joint.lower) or isfinite(joint.upper) for joint in robot.axes)
-    return kind == "speed" and any(isfinite(joint.speed) for joint in robot.axes)
+        return any(isfinite(joint.lower) or isfinite(joint.upper) for joint in axes)
+    return kind == "speed" and any(isfinite(joint.speed) for joint in axes)
 
 
 def _robot_table(file: Any) -> dict[str, Any]:
