@@ -37,7 +37,7 @@ def judged(folder, name):
 ROBOTS_ALIKE = ("arm7", "koch11", "mobile8", "planar3", "planar4", "rail6")
 """Packaged robots with one tip, all of whose joints are driven."""
 
-LONG = {"koch11", "arm7", "rail6"}
+LONG = {"koch11", "arm7", "rail6", "mobile8", "planar4"}
 """Robots whose first programs take seconds to run twice."""
 
 
@@ -66,7 +66,7 @@ def test_a_packaged_robot_by_its_urdf(inside, folder, name):
     assert np.ptp(run.tool[begin:, :3], axis=0).max() > 0.02
 
 
-@pytest.mark.parametrize("name", ["planar3", "arm7"])
+@pytest.mark.parametrize("name", ["planar3", pytest.param("arm7", marks=pytest.mark.slow)])
 def test_a_robot_by_name(inside, folder, name):
     done = inside("new", "first", "--robot", name)
     assert (done.returncode, done.stderr) == (0, "")
@@ -79,7 +79,7 @@ def test_a_robot_by_name(inside, folder, name):
 
 
 @needs_robot_data
-@pytest.mark.parametrize("name", ["panda", "ur5", "kinova"])
+@pytest.mark.parametrize("name", ["panda", "ur5"])
 def test_robots_of_the_extra_by_their_urdf(inside, folder, name):
     section = external_section(name)
     urdf = robot_data_folder() / section.model
@@ -208,9 +208,7 @@ def slides(axes):
 @pytest.mark.parametrize(
     ("axes", "task", "lines"),
     [
-        (["1 0 0"], ["x"], 2),
         (["0 1 0", "0 0 1"], ["y", "z"], 4),
-        (["1 0 0", "0 1 0", "0 0 1"], ["x", "y", "z"], 4),
         (["1 0 0", "0.6 0.8 0", "0 0 1", "1 0 0"], ["x", "y", "z"], 4),
     ],
 )
@@ -223,10 +221,10 @@ def test_slides(inside, folder, axes, task, lines):
     judged(folder, "first")
 
 
-def test_a_turntable(inside, folder):
-    (folder / "r.urdf").write_text(slides(["0 0 1"]).replace("prismatic", "revolute"))
+def test_joints_that_only_turn_the_tip(inside, folder):
+    (folder / "r.urdf").write_text(slides(["0 0 1", "0 1 0", "1 0 0"]).replace("prismatic", "revolute"))
     done = inside("new", "first", "--urdf", "r.urdf")
     assert done.returncode == 0
-    assert "IRL664: no first moves were found: the joints turn 'l1' and do not move it" in done.stderr
-    assert "first.toml: r.urdf, 1 axis, tip 'l1'" in done.stdout
+    assert "IRL664: no first moves were found: the joints turn 'l3' and do not move it" in done.stderr
+    assert "first.irl: 1 move; tried" in done.stdout
     judged(folder, "first")

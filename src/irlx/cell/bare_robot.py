@@ -63,7 +63,8 @@ def _moved_coordinates(asked: RobotSection, folder: Path) -> list[str] | None:
         robot = read_urdf((folder / (asked.model or "")).read_text(encoding="utf-8"), asked.tip)
     except (OSError, ValueError):
         return None
-    if not 0 < len(robot.axes) < len(COORDINATES):
+    # One joint alone makes no robot: Pinocchio gives its Jacobian as a vector.
+    if not 1 < len(robot.axes) < len(COORDINATES):
         return None
     # Imported here: robots with enough axes are told of without Pinocchio.
     from irlx.robot.kinematics import Kinematics

@@ -57,14 +57,13 @@ def command(options: argparse.Namespace) -> int:
 def _told(found: FirstProgram, cell: Path, program: Path, model: str) -> str:
     robot = found.bare.robot
     tried = f"tried, {found.duration:.4g} s, {found.checks} checks passed" if found.checks else "not tried"
-    axes = "1 axis" if len(robot.axes) == 1 else f"{len(robot.axes)} axes"
     moves = "1 move" if found.moves == 1 else f"{found.moves} moves"
     check = (
         f"irlx robots {model}" if found.bare.has_name else f"irlx robots --check {model} --tip {robot.tip}"
     )
     return "\n".join(
         [
-            f"{'written':<12}{cell}: {model}, {axes}, tip '{robot.tip}'",
+            f"{'written':<12}{cell}: {model}, {len(robot.axes)} axes, tip '{robot.tip}'",
             f"{'written':<12}{program}: {moves}; {tried}",
             f"{'next':<12}irlx run {program}",
             f"{'next':<12}put what is known into {cell}; {check}",

@@ -122,9 +122,8 @@ def _show(options: argparse.Namespace) -> int:
         return 0
     spare = len(robot.axes) - len(robot.coordinates)
     words = "no axis" if spare == 0 else "1 axis" if spare == 1 else f"{spare} axes"
-    count = "1 axis" if len(robot.axes) == 1 else f"{len(robot.axes)} axes"
     lines = [
-        f"{'robot':<12}{options.name}: {count} from '{robot.root}' to the tip '{robot.tip}'",
+        f"{'robot':<12}{options.name}: {len(robot.axes)} axes from '{robot.root}' to the tip '{robot.tip}'",
         f"{'task':<12}{' '.join(robot.coordinates)}: {words} to spare",
         "",
     ]

@@ -182,10 +182,7 @@ class Kinematics:
         pin.computeJointJacobians(self.model, self.data, q)
         pose = pin.updateFramePlacement(self.model, self.data, self._tip_frame)
         twist = pin.log6(pose.actInv(target)).vector
-        # Of one joint alone it comes as a vector.
-        jacobian = pin.getFrameJacobian(self.model, self.data, self._tip_frame, _LOCAL).reshape(
-            6, self.joints
-        )
+        jacobian = pin.getFrameJacobian(self.model, self.data, self._tip_frame, _LOCAL)
         return twist, jacobian
 
     def difference_derivative(self, q: Array, target: pin.SE3) -> tuple[Array, Array]:
