@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice, product
 from math import floor, isfinite, log10
 from pathlib import Path
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from irlx.cell.bare_robot import BareRobot, bare_robot
 from irlx.cell.build import from_si, to_si
 from irlx.cell.new_cell_text import CellChoices, new_cell_text
+from irlx.cell.new_program_text import FirstMoves, new_program_text
 from irlx.diagnostics import Diagnostic, IrlxError, report
 from irlx.robot.kinematics import Kinematics
 from irlx.running import run
@@ -37,8 +38,8 @@ _STILL = 1e-9
 _NEAR = 0.01
 """How near, as a share of a move and in rad, a search must come to a corner; the trial tells the rest."""
 
-_NAME = 40
-"""Characters of the robot's name that a comment has."""
+_FARTHER = {False: 12.0, True: 100.0}
+"""How far, deg and mm, joints are from the first posture in the second one."""
 
 _TRIED = 2
 """Rectangles of one size that are tried."""
@@ -65,15 +66,6 @@ class FirstProgram:
     warning: Diagnostic | None
 
 
-@dataclass(frozen=True)
-class _Moves:
-    """A rectangle of edges u and v, mm, from a posture; `turned`: in the tool's frame, not the root's."""
-
-    u: tuple[float, float, float]
-    v: tuple[float, float, float]
-    turned: bool = False
-
-
 def first_program(name: str, model: str, tip: str | None, folder: Path) -> FirstProgram:
     """Cell `name`.toml and program `name`.irl in `folder`, for a robot by its name or URDF path.
 
@@ -86,43 +78,30 @@ def first_program(name: str, model: str, tip: str | None, folder: Path) -> First
     q, measure = _start(bare, kinematics)
     start = tuple(_rounded(bare, joint, float(value)) for joint, value in enumerate(q))
     ready = _aside(bare, start)
-    inside = bare.has_name and bare.start is not None
     shown = model if bare.has_name else os.path.relpath(model, folder)
-    size = _size(bare)
-    cause = "no line that the tool could go was found in any posture"
-    if all(row >= 3 for row in kinematics.task.rows):
-        cause = f"the joints turn '{bare.robot.tip}' and do not move it"
+    begin = None if bare.has_name and bare.start is not None else start
+    cause = "no posture from which the tool could go on was found"
     for watched in _watching(bare):
-        for halving in range(_HALVINGS if measure > _WORST else 0):
-            edge = _nice(size * 0.5**halving)
-            choices = CellChoices(name, shown, None if inside else start, _nice(_PACE * edge), watched)
-            for moves in islice(_rectangles(kinematics, bare, ready, edge), _TRIED):
-                text = _program_text(name, bare, ready, moves, edge)
-                found = _tried(bare, choices, text, model)
-                if isinstance(found, FirstProgram):
-                    return found
-                cause = found
-    return _without_moves(
-        bare,
-        CellChoices(name, shown, None if inside else start, _nice(_PACE * _nice(size)), None),
-        ready,
-        cause,
-        model,
-    )
+        for edge, moves in _candidates(kinematics, bare, ready) if measure > _WORST else ():
+            choices = CellChoices(name, shown, begin, _nice(_PACE * edge), watched)
+            found = _tried(bare, choices, new_program_text(name, bare, ready, moves), model)
+            if isinstance(found, FirstProgram):
+                return found
+            cause = found
+    choices = CellChoices(name, shown, begin, _nice(_PACE * _nice(_size(bare))), _watching(bare)[-1])
+    return _without_moves(bare, choices, ready, cause, model)
 
 
 def _without_moves(
     bare: BareRobot, choices: CellChoices, ready: tuple[float, ...], cause: str, model: str
 ) -> FirstProgram:
     """A program that only goes to a posture, and says why."""
-    text = _program_text(choices.name, bare, ready, None, choices.speed)
-    warning = report("IRL664", cause=cause)
+    text = new_program_text(choices.name, bare, ready, FirstMoves())
     found = _tried(bare, choices, text, model)
-    if isinstance(found, str):
-        return FirstProgram(
-            bare, new_cell_text(bare, choices), text, 0, 0.0, 0, report("IRL664", cause=found)
-        )
-    return FirstProgram(bare, found.cell, text, found.moves, found.duration, found.checks, warning)
+    if isinstance(found, FirstProgram):
+        return replace(found, warning=report("IRL664", cause=cause))
+    cell, warning = new_cell_text(bare, choices), report("IRL664", cause=found)
+    return FirstProgram(bare, cell, text, text.count("  MOVE "), 0.0, 0, warning)
 
 
 def _start(bare: BareRobot, kinematics: Kinematics) -> tuple[Array, float]:
@@ -185,10 +164,40 @@ def _nice(length: float) -> float:
     return max(factor * power for factor in (1.0, 2.0, 5.0) if factor * power <= length * (1.0 + 1e-9))
 
 
+def _candidates(
+    kinematics: Kinematics, bare: BareRobot, ready: tuple[float, ...]
+) -> Iterator[tuple[float, FirstMoves]]:
+    """What is tried, the best first, each with the length, mm, of its moves.
+
+    Rectangles, large ones first, then lines to other postures: a robot with few axes may have no rectangle
+    whose corners it reaches without turning its tool.
+    """
+    size = _size(bare)
+    for halving in range(_HALVINGS):
+        edge = _nice(size * 0.5**halving)
+        for moves in islice(_rectangles(kinematics, bare, ready, edge), _TRIED):
+            yield edge, moves
+    for halving in range(_HALVINGS):
+        there = _towards_room(bare, ready, 0.5**halving)
+        if there != ready:
+            yield _nice(size), FirstMoves(there=there)
+
+
+def _towards_room(bare: BareRobot, ready: tuple[float, ...], share: float) -> tuple[float, ...]:
+    """A posture with every joint moved by a share of `_FARTHER` to where it has more room."""
+    found = []
+    for joint, value in enumerate(ready):
+        lower, upper = _position_limits(bare, joint)
+        way = share * _FARTHER[bare.robot.axes[joint].is_prismatic]
+        moved = value + (way if upper - value >= value - lower else -way)
+        found.append(moved if lower <= moved <= upper else value)
+    return tuple(found)
+
+
 def _rectangles(
     kinematics: Kinematics, bare: BareRobot, ready: tuple[float, ...], edge: float
-) -> Iterator[_Moves]:
-    """Rectangles, or lines where the tool has one direction, that posture by posture can be reached."""
+) -> Iterator[FirstMoves]:
+    """Rectangles, or lines where the tool has one direction, whose corners can be reached."""
     q = np.array([to_si(bare.robot, joint, value) for joint, value in enumerate(ready)])
     directions, turned = _directions(kinematics, q)
     lower, upper = bare.limits.position_lower, bare.limits.position_upper
@@ -205,9 +214,9 @@ def _rectangles(
     pairs = [(u, v) for u, v in product(able, able) if abs(float(u @ v)) < _STILL * edge * edge]
     for u, v in pairs:
         if reached(u + v):
-            yield _Moves(_vector(u), _vector(v), turned)
+            yield FirstMoves((_vector(u), _vector(u + v), _vector(v)), turned)
     if not pairs:
-        yield from (_Moves(_vector(u), (0.0, 0.0, 0.0), turned) for u in able)
+        yield from (FirstMoves((_vector(u),), turned) for u in able)
 
 
 def _directions(kinematics: Kinematics, q: Array) -> tuple[list[Array], bool]:
@@ -248,66 +257,3 @@ def _tried(bare: BareRobot, choices: CellChoices, program: str, model: str) -> F
     cell = new_cell_text(bare, choices)
     duration, moves = done.summary.duration, program.count("  MOVE ")
     return FirstProgram(bare, cell, program, moves, duration, len(judged.made), None)
-
-
-def _program_text(
-    name: str, bare: BareRobot, ready: tuple[float, ...], moves: _Moves | None, edge: float
-) -> str:
-    """Text of the program; without moves along a path it only goes to its posture."""
-    posture = ", ".join(_real(value) for value in ready)
-    spare = len(bare.robot.axes) - len(bare.robot.coordinates)
-    lines = [
-        f"PROGRAM {name};",
-        f"{{ First moves of {_comment(bare.robot.name)}: to a posture, then straight lines and back. }}",
-        f"SYSTEM SPECIFICATION {name};  {{ the cell: {name}.toml }}",
-        "VAR",
-        "  { A posture: one value a joint from base to tip, degrees, of slides mm. }",
-        f"  MAIN_JOINT: ready := MAIN_JOINT({posture});",
-    ]
-    if moves is None:
-        return "\n".join(
-            [
-                *lines,
-                "BEGIN",
-                "  MOVE PTP ready SPEED_PTP := 50;  { half as fast as the joints may }",
-                "ENDPROGRAM;",
-                "",
-            ]
-        )
-    corners = _corners(moves)
-    cyclic = spare > 0
-    lines += [
-        "  POSE: here;",
-        "BEGIN",
-        "  MOVE PTP ready SPEED_PTP := 50;  { every joint straight to its value, half as fast as it may }",
-        "  here := FK(ready);  { where the tool is in that posture: mm and degrees in the root frame }",
-    ]
-    if cyclic:
-        words = "a joint is to spare" if spare == 1 else f"{spare} joints are to spare"
-        lines.append(f"  CYCLICSTART;  {{ {words}: the posture comes back where the tool comes back }}")
-    for number, corner in enumerate(corners):
-        comment = f"  {{ {edge:g} mm in a straight line, not turned }}" if number == 0 else ""
-        lines.append(f"  MOVE LIN {_target(corner, moves.turned)};{comment}")
-    lines.append("  MOVE LIN here;")
-    lines += ["  CYCLICEND;"] if cyclic else []
-    return "\n".join([*lines, "ENDPROGRAM;", ""])
-
-
-def _corners(moves: _Moves) -> list[tuple[float, float, float]]:
-    u, v = np.array(moves.u), np.array(moves.v)
-    return [_vector(u), _vector(u + v), _vector(v)] if np.any(v) else [_vector(u)]
-
-
-def _target(offset: tuple[float, float, float], turned: bool) -> str:
-    point = f"POSITION({', '.join(f'{part:g}' for part in offset)})"
-    return f"here @ POSE({point}, ORIQUAT(1, 0, 0, 0))" if turned else f"here + {point}"
-
-
-def _real(value: float) -> str:
-    """A number of the language, that of a whole one with a point."""
-    return f"{value:.0f}." if value == round(value) else f"{value:.12g}"
-
-
-def _comment(words: str) -> str:
-    """Words that a comment can hold, on one line."""
-    return words[:_NAME].replace("{", "(").replace("}", ")").replace("\n", " ")
