@@ -78,7 +78,7 @@ def first_program(name: str, model: str, tip: str | None, folder: Path) -> First
     q, measure = _start(bare, kinematics)
     start = tuple(_rounded(bare, joint, float(value)) for joint, value in enumerate(q))
     ready = _aside(bare, start)
-    shown = model if bare.has_name else os.path.relpath(model, folder)
+    shown = model if bare.has_name else _path_from(folder, model)
     begin = None if bare.has_name and bare.start is not None else start
     cause = "no posture from which the tool could go on was found"
     for watched in _watching(bare):
@@ -90,6 +90,12 @@ def first_program(name: str, model: str, tip: str | None, folder: Path) -> First
             cause = found
     choices = CellChoices(name, shown, begin, _nice(_PACE * _nice(_size(bare))), _watching(bare)[-1])
     return _without_moves(bare, choices, ready, cause, model)
+
+
+def _path_from(folder: Path, model: str) -> str:
+    """Path of a URDF from the folder of the cell, in a form that no robot's name has."""
+    path = os.path.relpath(model, folder)
+    return path if "/" in path or "." in path else f"./{path}"
 
 
 def _without_moves(

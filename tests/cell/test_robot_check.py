@@ -100,6 +100,24 @@ def test_several_ends_are_told_with_their_axes(found):
     assert {one.code for one in found(text, "camera")} == NOTES | {"IRL668"}
 
 
+def test_an_end_that_mimics_is_no_fault(found):
+    """Of a gripper whose second finger follows the first one; the fingers are ends before the tool."""
+    fingers = "".join(
+        f'<link name="f{k}"/><joint name="finger{k}" type="prismatic"><parent link="l4"/><child link="f{k}"/>'
+        f'<axis xyz="0 1 0"/><limit lower="0" upper="0.04" velocity="0.1" effort="9"/>{mimic}</joint>'
+        for k, mimic in ((1, ""), (2, '<mimic joint="finger1"/>'))
+    )
+    text = whole("").replace('<link name="l0"/>', f'{fingers}<link name="l0"/>')
+    told = found(text)
+    assert not [one for one in told if one.is_error]
+    assert {"IRL665", "IRL666"} <= {one.code for one in told}
+
+
+def test_macros_are_told(found):
+    text = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:include filename="arm.xacro"/></robot>'
+    assert "it has macros of xacro" in found(text)[0].message
+
+
 @pytest.mark.parametrize(
     ("broken", "told"),
     [

@@ -139,6 +139,13 @@ def test_the_path_goes_from_the_cell_to_the_urdf(inside, folder):
     judged(folder / "cells", "first")
 
 
+def test_a_urdf_without_an_ending_is_no_robot_by_name(inside, folder):
+    (folder / "arm7").write_text((ROBOTS / "planar3.urdf").read_text())
+    assert inside("new", "first", "--urdf", "arm7").returncode == 0
+    assert tomllib.loads((folder / "first.toml").read_text())["robot"]["model"] == "./arm7"
+    assert len(load_cell(folder / "first.toml").robot.axes) == 3
+
+
 def test_files_that_are_there_stay(inside, folder, names):
     before = {name: (folder / name).read_bytes() for name in names(folder)}
     done = inside("new", "p", "--robot", "planar3")

@@ -17,6 +17,7 @@ from irlx.robot.urdf import read_urdf
 from irlx.robot.urdf_values import RobotModelError
 
 _WHOLE = 6
+_XACRO = "<xacro:"
 
 
 def check_robot(path: str | os.PathLike[str], tip: str | None = None) -> list[Diagnostic]:
@@ -33,7 +34,8 @@ def check_robot(path: str | os.PathLike[str], tip: str | None = None) -> list[Di
     model = model_text(text)
     ends = model.ends
     tip = ends[0] if tip is None and len(ends) == 1 else tip
-    _check_readable(text, tip if tip is not None or not ends else ends[0], findings)
+    # Several ends are no fault of the file: it is read with no joint before the tip then.
+    _check_readable(text, model.root if tip is None and len(ends) > 1 else tip, findings)
     joints = model.joints if tip is None else model.chain(tip)
     if tip is None and len(ends) > 1:
         told = ", ".join(f"{end} ({_axes_of(model, end)} axes)" for end in ends)
@@ -60,11 +62,13 @@ def _text(path: Path) -> str:
 
 
 def _check_readable(text: str, tip: str | None, findings: ModelFindings) -> None:
-    """IRL612 as a cell would tell it. Several ends are no fault of the file: one of them stands for all."""
+    """IRL612 as a cell would tell it, with a word on files that a URDF has yet to be made of."""
     try:
         read_urdf(text, tip)
     except RobotModelError as cause:
         near = near_matches(cause.subject, cause.known)
+        if _XACRO in text:
+            near += f"; it has macros of xacro, which makes a URDF of it: xacro {findings.file} > robot.urdf"
         findings.tell("IRL612", model=findings.file, cause=str(cause), near=near)
 
 

@@ -70,6 +70,12 @@ class ModelText:
         parents = {joint.parent for joint in self.joints}
         return tuple(link.name for link in self.links if link.name not in parents)
 
+    @property
+    def root(self) -> str | None:
+        """The first link that no joint leads to, None without links or where they all form a ring."""
+        children = {joint.child for joint in self.joints}
+        return next((link.name for link in self.links if link.name not in children), None)
+
     def chain(self, tip: str) -> tuple[JointText, ...]:
         """Joints that lead to a link, from the root; where they form a ring, each of them once."""
         into = {joint.child: joint for joint in self.joints}
