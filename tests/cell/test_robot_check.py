@@ -105,12 +105,83 @@ def test_an_end_that_mimics_is_no_fault(found):
     fingers = "".join(
         f'<link name="f{k}"/><joint name="finger{k}" type="prismatic"><parent link="l4"/><child link="f{k}"/>'
         f'<axis xyz="0 1 0"/><limit lower="0" upper="0.04" velocity="0.1" effort="9"/>{mimic}</joint>'
-        for k, mimic in ((1, ""), (2, '<mimic joint="finger1"/>'))
+        for k, mimic in ((2, '<mimic joint="finger1"/>'), (1, ""))
     )
     text = whole("").replace('<link name="l0"/>', f'{fingers}<link name="l0"/>')
     told = found(text)
     assert not [one for one in told if one.is_error]
     assert {"IRL665", "IRL666"} <= {one.code for one in told}
+
+
+def elbow(kind="revolute", axis='<axis xyz="0 1 0"/>', limit="", origin="0 0 0.3"):
+    limit = limit or '<limit lower="-2" upper="2" velocity="2" effort="9"/>'
+    return (
+        f'<joint name="elbow" type="{kind}"><parent link="upper"/><child link="lower"/>'
+        f'<origin xyz="{origin}"/>{axis}{limit}</joint>'
+    )
+
+
+def lower(mass="2", inertia='ixx="0.017" iyy="0.017" izz="0.0033"', centre="0 0 0"):
+    return (
+        f'<link name="lower"><inertial><origin xyz="{centre}"/><mass value="{mass}"/><inertia {inertia}/>'
+        '</inertial><collision><geometry><box size="0.1 0.1 0.3"/></geometry></collision></link>'
+    )
+
+
+SLOW = "velocity='0.5' effort='9'"
+
+
+@pytest.mark.parametrize(
+    ("fragment", "code", "told"),
+    [
+        (elbow(limit=f"<limit lower='-2' {SLOW}/>"), "IRL650", "its <limit> has no upper"),
+        (elbow(limit=f"<limit {SLOW}/>"), "IRL650", "its <limit> has no lower and no upper"),
+        (elbow("continuous"), "IRL650", "without end"),
+        (elbow(limit="<limit lower='1' upper='1' velocity='1'/>"), "IRL651", "are both 1"),
+        (elbow(limit="<limit lower='-1' upper='1' velocity='0'/>"), "IRL651", "speed limit (velocity) is 0"),
+        (elbow(limit=f"<limit lower='-13' upper='13' {SLOW}/>"), "IRL658", "13 rad, 2.07 turns"),
+        (
+            elbow("prismatic", limit=f"<limit lower='0' upper='800' {SLOW}/>"),
+            "IRL658",
+            "800 m: are these milli",
+        ),
+        (elbow("prismatic", limit="<limit lower='0' upper='1' velocity='250'/>"), "IRL659", "250 m/s"),
+        (elbow(axis=""), "IRL663", "none is given, and x counts"),
+        (elbow(axis="<axis xyz='0 0.7 0.7'/>"), "IRL663", "its length is 0.989949"),
+        (lower("-2"), "IRL654", "its mass is -2 kg"),
+        (lower("0"), "IRL654", "its mass is 0 kg"),
+        (lower(centre="0 0 120"), "IRL660", "the centre of mass of 'lower' lies 120 m"),
+        (lower(inertia='ixx="0" iyy="0" izz="0"'), "IRL656", "as a point"),
+        (lower(inertia='ixx="-0.1" iyy="0.1" izz="0.1"'), "IRL656", "none may be negative"),
+        (lower(inertia='ixx="0.1" iyy="0.1" izz="0.1" ixy="0.3"'), "IRL656", "none may be negative"),
+        (lower(inertia='ixx="1e-8" iyy="1e-8" izz="1e-8"'), "IRL657", "too small for 2 kg"),
+        (lower(inertia='ixx="17" iyy="17" izz="17"'), "IRL657", "too large for 2 kg"),
+    ],
+)
+def test_what_is_told_of_a_joint_or_a_link(found, fragment, code, told):
+    alike = [one for one in found(whole(fragment)) if one.code == code]
+    assert any(told in one.message for one in alike), [one.message for one in alike]
+    assert {one.place.key for one in alike} <= {"joint 'elbow'", "link 'lower'"}
+
+
+@pytest.mark.parametrize(
+    "fragment",
+    [
+        elbow(limit="<limit lower='-12.5' upper='12.5' velocity='49'/>"),
+        elbow("prismatic", limit="<limit lower='-40' upper='40' velocity='15'/>"),
+        elbow(axis="<axis xyz='0 0.70711 0.70711'/>"),
+        elbow(origin="0 0 5"),
+        lower(inertia='ixx="0.0002" iyy="0.0002" izz="0.0002"'),
+    ],
+)
+def test_what_is_unusual_but_in_order(found, fragment):
+    assert {one.code for one in found(whole(fragment))} == NOTES
+
+
+def test_a_chain_of_no_size(found):
+    text = re.sub(r'xyz="0 0 0\.[23]"', 'xyz="0 0 0.0002"', whole(elbow()))
+    (told,) = [one for one in found(text) if one.code == "IRL660"]
+    assert "the whole chain of joints is 1.2 mm long" in told.message
 
 
 def test_macros_are_told(found):
