@@ -54,7 +54,8 @@ _WORST = 1e-4
 class FirstProgram:
     """Texts of cell and program, and what came of trying them.
 
-    `duration` s, `checks` passed by the verifier; `warning` where the program has no moves along a path.
+    `duration` s, `checks` passed by the verifier; `warning` where the program has no moves along a path;
+    `watched`: whether links were kept off each other in the trial, if the robot says so itself.
     """
 
     bare: BareRobot
@@ -64,6 +65,7 @@ class FirstProgram:
     duration: float
     checks: int
     warning: Diagnostic | None
+    watched: bool = False
 
 
 def first_program(name: str, model: str, tip: str | None, folder: Path) -> FirstProgram:
@@ -121,10 +123,13 @@ def _watching(bare: BareRobot) -> tuple[bool | None, ...]:
     """Whether links are to be kept off each other: what is tried, in this order."""
     if bare.has_name:
         return (None,)
-    shapes = [solid.shape for solids in bare.robot.solids.values() for solid in solids]
-    # Between the triangles of large meshes a verifier looks for minutes.
-    simple = len(shapes) > 1 and not any(isinstance(shape, Mesh) for shape in shapes)
-    return (True, False) if simple else (False,)
+    return (True, False) if len(bare.robot.solids) > 1 and not _has_meshes(bare) else (False,)
+
+
+def _has_meshes(bare: BareRobot) -> bool:
+    """Whether links have meshes: between the triangles of large ones a verifier looks for minutes."""
+    solids = (solid for solids in bare.robot.solids.values() for solid in solids)
+    return any(isinstance(solid.shape, Mesh) for solid in solids)
 
 
 def _rounded(bare: BareRobot, joint: int, value: float) -> float:
@@ -248,7 +253,8 @@ def _vector(step: Array) -> tuple[float, float, float]:
 def _tried(bare: BareRobot, choices: CellChoices, program: str, model: str) -> FirstProgram | str:
     """What came of running and verifying the program, or why it does not run."""
     at = model if bare.has_name else str(Path(model).absolute())
-    there = CellChoices(choices.name, at, choices.start, choices.speed, choices.watched)
+    watched = False if _has_meshes(bare) else choices.watched
+    there = replace(choices, model=at, watched=watched)
     with TemporaryDirectory(prefix="irlx-new-") as folder:
         path = Path(folder) / f"{choices.name}.irl"
         path.write_text(program, encoding="utf-8")
@@ -262,4 +268,4 @@ def _tried(bare: BareRobot, choices: CellChoices, program: str, model: str) -> F
         return f"{judged.failed[0].name}: {judged.failed[0].text}"
     cell = new_cell_text(bare, choices)
     duration, moves = done.summary.duration, program.count("  MOVE ")
-    return FirstProgram(bare, cell, program, moves, duration, len(judged.made), None)
+    return FirstProgram(bare, cell, program, moves, duration, len(judged.made), None, watched is not False)

@@ -57,6 +57,8 @@ def command(options: argparse.Namespace) -> int:
 def _told(found: FirstProgram, cell: Path, program: Path, model: str) -> str:
     robot = found.bare.robot
     tried = f"tried, {found.duration:.4g} s, {found.checks} checks passed" if found.checks else "not tried"
+    if found.checks and found.bare.has_name and not found.watched:
+        tried += ", without self-collision for its meshes"
     moves = "1 move" if found.moves == 1 else f"{found.moves} moves"
     check = (
         f"irlx robots {model}" if found.bare.has_name else f"irlx robots --check {model} --tip {robot.tip}"
