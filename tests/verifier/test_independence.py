@@ -11,6 +11,7 @@ SHARED = {
     "irlx.blocks.codec",
     "irlx.diagnostics",
     "irlx.promises",
+    "irlx.robot.axis_direction",
     "irlx.robot.description",
     "irlx.robot.limits",
     "irlx.robot.relation",

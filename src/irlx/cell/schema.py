@@ -155,12 +155,16 @@ class ConstraintSection(Section):
 
     `joints`: a factor for each joint that takes part; sum of factor times joint value = `value` (deg | mm),
     by default that of the start posture. `use` instead: the name of a constraint registered in Python.
+    `axis` instead: a vector in the frame of `link` that points along `direction`, a vector in the root frame.
     """
 
     name: Annotated[str, Field(min_length=1)]
     joints: Annotated[dict[str, Number], Field(min_length=1)] | None = None
     value: Number | None = None
     use: str | None = None
+    link: str | None = None
+    axis: Vector | None = None
+    direction: Vector | None = None
 
 
 class WaypointSection(Section):
