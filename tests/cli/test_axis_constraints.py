@@ -131,9 +131,9 @@ def test_an_axis_that_points_the_other_way_is_no_start(tmp_path: Path) -> None:
         ('link = "arm7"\naxis = [1, 0, 0]\ndirection = [0, 0, 1]', "IRL643", "constraint[1].link"),
         ('link = "arm_7"\naxis = [1, 0, 0]\ndirection = [0.1, 0, 1]', "IRL619", "constraint[1]"),
         # Joints tilt it one way only: a relation between them says as much.
-        ('link = "arm_7"\naxis = [1, 0, 0]\ndirection = [0, 0, 1]', "IRL625", "constraint[1]"),
+        ('link = "arm_7"\naxis = [1, 0, 0]\ndirection = [0, 0, 1]', "IRL624", "constraint[1]"),
         # No joint moves it.
-        ('link = "arm_2"\naxis = [0, 0, 1]\ndirection = [0, 0, 1]', "IRL625", "constraint[1]"),
+        ('link = "arm_2"\naxis = [0, 0, 1]\ndirection = [0, 0, 1]', "IRL624", "constraint[1]"),
     ],
 )
 def test_faults_of_a_cell(tmp_path: Path, section: str, code: str, key: str) -> None:
@@ -150,7 +150,7 @@ def test_what_the_pose_of_the_tool_says_already_is_refused(tmp_path: Path) -> No
     cell = CELL.replace('link = "arm_8"', 'link = "tcp"').replace("[-3, 0, 0]", str(rotation[:, 2].tolist()))
     with pytest.raises(irlx.CellError) as caught:
         ran(tmp_path, SQUARE, cell)
-    assert caught.value.diagnostics[0].code == "IRL625"
+    assert caught.value.diagnostics[0].code == "IRL624"
 
 
 def test_the_same_constraint_twice_is_refused(tmp_path: Path) -> None:
@@ -158,6 +158,6 @@ def test_the_same_constraint_twice_is_refused(tmp_path: Path) -> None:
     with pytest.raises(irlx.CellError) as caught:
         ran(tmp_path, SQUARE, CELL + again)
     found = caught.value.diagnostics[0]
-    assert (found.code, found.place.key) == ("IRL625", "constraint[2]")
+    assert (found.code, found.place.key) == ("IRL624", "constraint[2]")
     assert "'again' holds 2 coordinates" in found.message
     assert "can move 0 of them" in found.message

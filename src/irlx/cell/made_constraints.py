@@ -41,7 +41,7 @@ def constrained(plain: Kinematics, cell: Cell) -> Kinematics:
     """The kinematics of a cell's robot with the cell's constraints.
 
     Raises CellError: IRL616, IRL619 for a constraint that the start breaks, IRL617 for one that nobody
-    registered, IRL625 for one that holds what joints cannot move, or what the tool's pose holds already.
+    registered, IRL624 for one that holds what joints cannot move, or what the tool's pose holds already.
     """
     if not (cell.relations or cell.registered):
         return plain
@@ -95,7 +95,7 @@ def _dependent(made: list[_Made], plain: Kinematics, cell: Cell) -> Diagnostic |
         size = len(one.constraint.residual(cell.start))
         rank = _rank(plain.constrained([other.constraint for other in made[:count]]), postures)
         if rank < before + size:
-            return report("IRL625", one.place, name=one.name, rows=size, left=rank - before)
+            return report("IRL624", one.place, name=one.name, rows=size, left=rank - before)
         before = rank
     return None
 

@@ -68,7 +68,7 @@ CELL = (
         "give robot.limits.acceleration in the cell file",
     ),
     error(
-        "IRL625",
+        "IRL624",
         "the constraint '{name}' holds {rows} coordinates, but beside the tool's pose and the constraints "
         "before it joints can move {left} of them",
         "a constraint is for what is left to choose, not for what the pose says already or no joint moves",
