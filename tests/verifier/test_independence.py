@@ -14,6 +14,7 @@ SHARED = {
     "irlx.robot.axis_direction",
     "irlx.robot.description",
     "irlx.robot.limits",
+    "irlx.robot.link_path",
     "irlx.robot.relation",
     "irlx.scene.obstacle",
     "irlx.scene.scene",

@@ -10,22 +10,29 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.cell.cell import RegisteredConstraint
+from irlx.cell.link_path_faults import fault_of_curve, fault_of_points
 from irlx.cell.schema import ConstraintSection
 from irlx.diagnostics import Diagnostic, Place, report
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.promises import CONDITION
 from irlx.robot.axis_direction import AxisDirection
 from irlx.robot.description import RobotDescription
+from irlx.robot.link_path import LinkPath
 from irlx.robot.relation import JointRelation, Relation
 from irlx.solids.placement import Vector3
 
 Array = NDArray[np.float64]
 Constraints = tuple[tuple[Relation, ...], tuple[RegisteredConstraint, ...]]
 
-_KINDS = {"joints": ("value",), "use": (), "axis": ("link", "direction")}
+_KINDS = {
+    "joints": ("value",),
+    "use": (),
+    "axis": ("link", "direction"),
+    "path": ("link", "closed", "heading"),
+}
 """What says of which kind a constraint is, and what may stand beside it; `link` and `direction` must."""
 
-_MAY_LACK = ("value",)
+_MUST_STAND = ("link", "direction")
 
 
 @dataclass(frozen=True)
@@ -50,7 +57,8 @@ def read_constraints(
     file: str,
     errors: list[Diagnostic],
 ) -> Constraints:
-    """Relations and registered constraints of a cell; faults go to `errors`: IRL603, IRL606, IRL616, IRL643.
+    """Relations and registered constraints of a cell; faults go to `errors`: IRL603, IRL606, IRL616, IRL626,
+    IRL627, IRL643.
 
     `start` (n,) rad | m, None where it is at fault itself: then it is not compared. Whether it keeps
     conditions on links the robot's model says later.
@@ -69,7 +77,7 @@ def read_constraints(
             if _known_joints(section.joints, reading):
                 relations.append(_relation(section.joints, start, reading))
         elif _known_link(reading):
-            relations += _axis_direction(reading)
+            relations += _link_path(reading) if section.path is not None else _axis_direction(reading)
     return tuple(relations), tuple(registered)
 
 
@@ -84,7 +92,7 @@ def _fault(section: ConstraintSection) -> str:
     odd = sorted(given - {kind, *beside})
     if odd:
         return f"no {odd[0]} beside {kind}"
-    missing = [name for name in beside if name not in given and name not in _MAY_LACK]
+    missing = [name for name in beside if name not in given and name in _MUST_STAND]
     if missing:
         return f"{missing[0]} beside {kind}"
     if section.joints is not None and not any(section.joints.values()):
@@ -135,6 +143,22 @@ def _axis_direction(reading: _Reading) -> list[AxisDirection]:
     if axis is None or direction is None:
         return []
     return [AxisDirection(section.name, section.link or "", axis, direction, reading.key)]
+
+
+def _link_path(reading: _Reading) -> list[LinkPath]:
+    """The condition on a link's place, none where no link could follow the path."""
+    section = reading.section
+    points = tuple((1e-3 * x, 1e-3 * y) for x, y in section.path or [])
+    cause = fault_of_points(points, section.closed)
+    if cause:
+        reading.fault("IRL626", "path", cause=cause)
+        return []
+    cause = fault_of_curve(points, section.closed)
+    if cause:
+        reading.fault("IRL627", "path", cause=cause)
+        return []
+    link = section.link or ""
+    return [LinkPath(section.name, link, points, section.closed, section.heading, reading.key)]
 
 
 def _unit(vector: list[float], key: str, reading: _Reading) -> Vector3 | None:

@@ -15,8 +15,12 @@ from irlx.diagnostics import Diagnostic, Place, report
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.promises import CONDITION
 from irlx.robot.axis_constraint import AxisConstraint
+from irlx.robot.axis_direction import AxisDirection
 from irlx.robot.equality import Constraint, LinearConstraint
 from irlx.robot.kinematics import Kinematics
+from irlx.robot.link_constraint import LinkConstraint
+from irlx.robot.link_path import LinkPath
+from irlx.robot.path_constraint import path_constraints
 from irlx.robot.registered_constraints import registered_constraints
 from irlx.robot.relation import JointRelation
 from irlx.transform.nearest import scaled_singular_values
@@ -61,11 +65,17 @@ def _of_links_and_joints(cell: Cell, plain: Kinematics) -> Iterator[_Made]:
         if isinstance(relation, JointRelation):
             yield _Made(LinearConstraint(relation, cell.robot.joint_names), relation.name, place)
             continue
-        constraint = AxisConstraint(relation, plain)
-        if not _broken(constraint, cell) <= CONDITION:
-            off = constraint.in_words(cell.start)
-            raise CellError(report("IRL619", place, name=relation.name, off=off))
-        yield _Made(constraint, relation.name, place)
+        for constraint in _of_link(relation, plain):
+            if not _broken(constraint, cell) <= CONDITION:
+                off = constraint.in_words(cell.start)
+                raise CellError(report("IRL619", place, name=relation.name, off=off))
+            yield _Made(constraint, relation.name, place)
+
+
+def _of_link(relation: AxisDirection | LinkPath, plain: Kinematics) -> list[LinkConstraint]:
+    if isinstance(relation, AxisDirection):
+        return [AxisConstraint(relation, plain)]
+    return path_constraints(relation, plain)
 
 
 def _registered(asked: RegisteredConstraint, cell: Cell, plain: Kinematics) -> _Made:

@@ -9,8 +9,8 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from irlx.robot.axis_direction import AxisDirection
-from irlx.robot.equality import Constraint
 from irlx.robot.kinematics import Kinematics
+from irlx.robot.link_constraint import LinkConstraint
 from irlx.robot.link_motion import LinkMotion
 
 Array = NDArray[np.float64]
@@ -19,7 +19,7 @@ _SMALL = 1e-4
 _OPPOSITE = 1e-6
 
 
-class AxisConstraint(Constraint):
+class AxisConstraint(LinkConstraint):
     """Phi = angle (u / |u|), rad, where u (2,) are the parts of the axis at right angles to the direction.
 
     Phi is the angle between axis and direction long, so that it is zero along the direction alone and

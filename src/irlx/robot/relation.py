@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from irlx.robot.axis_direction import AxisDirection
+from irlx.robot.link_path import LinkPath
 
 
 @dataclass(frozen=True)
@@ -22,5 +23,5 @@ class JointRelation:
     key: str = ""
 
 
-Relation: TypeAlias = JointRelation | AxisDirection
+Relation: TypeAlias = JointRelation | AxisDirection | LinkPath
 """A condition of a cell that plain data say all of."""

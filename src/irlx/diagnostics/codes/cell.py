@@ -73,6 +73,14 @@ CELL = (
         "before it joints can move {left} of them",
         "a constraint is for what is left to choose, not for what the pose says already or no joint moves",
     ),
+    error(
+        "IRL626", "{key}: {cause}", "neighbours are at least 1 mm apart; a path needs two, a closed one three"
+    ),
+    error(
+        "IRL627",
+        "{key}: the curve through the points {cause}",
+        "bends need a radius of 10 mm, and one part stays 20 mm off another: move or leave out points",
+    ),
     error("IRL630", "{key}: no shape '{shape}'{near}", "shapes are {known}"),
     error("IRL631", "{key}: a {shape} needs {missing}"),
     error("IRL632", "{key}: {what} has no {extra}", "a table of this shape takes name, shape, {takes}"),
