@@ -20,7 +20,7 @@ from irlx.robot.equality import Constraint, LinearConstraint
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.link_constraint import LinkConstraint
 from irlx.robot.link_path import LinkPath
-from irlx.robot.path_constraint import path_constraints
+from irlx.robot.path_constraint import PathConstraint
 from irlx.robot.registered_constraints import registered_constraints
 from irlx.robot.relation import JointRelation
 from irlx.transform.nearest import scaled_singular_values
@@ -65,17 +65,17 @@ def _of_links_and_joints(cell: Cell, plain: Kinematics) -> Iterator[_Made]:
         if isinstance(relation, JointRelation):
             yield _Made(LinearConstraint(relation, cell.robot.joint_names), relation.name, place)
             continue
-        for constraint in _of_link(relation, plain):
-            if not _broken(constraint, cell) <= CONDITION:
-                off = constraint.in_words(cell.start)
-                raise CellError(report("IRL619", place, name=relation.name, off=off))
-            yield _Made(constraint, relation.name, place)
+        constraint = _of_link(relation, plain)
+        if not _broken(constraint, cell) <= CONDITION:
+            off = constraint.in_words(cell.start)
+            raise CellError(report("IRL619", place, name=relation.name, off=off))
+        yield _Made(constraint, relation.name, place)
 
 
-def _of_link(relation: AxisDirection | LinkPath, plain: Kinematics) -> list[LinkConstraint]:
+def _of_link(relation: AxisDirection | LinkPath, plain: Kinematics) -> LinkConstraint:
     if isinstance(relation, AxisDirection):
-        return [AxisConstraint(relation, plain)]
-    return path_constraints(relation, plain)
+        return AxisConstraint(relation, plain)
+    return PathConstraint(relation, plain)
 
 
 def _registered(asked: RegisteredConstraint, cell: Cell, plain: Kinematics) -> _Made:

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from math import atan2, pi
+from math import atan2, hypot, pi
 
 import numpy as np
-import pinocchio as pin
 from numpy.typing import NDArray
 
 from irlx.robot.axis_direction import AxisDirection
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.link_constraint import LinkConstraint
 from irlx.robot.link_motion import LinkMotion
+from irlx.solids.placement import Vector3
 
 Array = NDArray[np.float64]
 
 _SMALL = 1e-4
 _OPPOSITE = 1e-6
+_NOTHING = (0.0, 0.0, 0.0)
 
 
 class AxisConstraint(LinkConstraint):
@@ -33,30 +34,28 @@ class AxisConstraint(LinkConstraint):
         self._link = LinkMotion(kinematics, relation.link)
         self._axis = np.array(relation.axis)
         self._direction = np.array(relation.direction)
-        self._across = across(self._direction)
+        self._frame = np.vstack([across(self._direction), self._direction])
 
-    def residual(self, q: Array) -> Array:
-        """The angle left at posture q (n,), about two axes, shape (2,) rad."""
-        axis = self._link.at(q).rotation @ self._axis
-        u, c = self._across @ axis, float(self._direction @ axis)
-        s = float(np.hypot(*u))
-        if c < 0.0 and s < _OPPOSITE:
-            # Along the opposite any turn by half a circle leads back: one of them.
-            return np.array([pi, 0.0])
-        return np.asarray(_ratio(c, s)[0] * u)
-
-    def derivative(self, q: Array) -> Array:
-        """Its derivative by q, shape (2, n)."""
+    def rows(self, q: Array) -> tuple[Array, Array]:
+        """The angle left about two axes (2,), rad, at posture q (n,), and its derivative (2, n)."""
         state = self._link.at(q)
-        axis = state.rotation @ self._axis
-        moved = -pin.skew(axis) @ state.angular
-        u, c = self._across @ axis, float(self._direction @ axis)
-        ratio, rate = _ratio(c, max(float(np.hypot(*u)), _OPPOSITE if c < 0.0 else 0.0))
-        return np.asarray(ratio * (self._across @ moved) + np.outer(u, rate * (self._direction @ moved)))
+        axis = state.pose.rotation @ self._axis
+        first, second, c = (self._frame @ axis).tolist()
+        s = hypot(first, second)
+        against = c < 0.0 and s < _OPPOSITE
+        ratio, rate = _ratio(c, _OPPOSITE if against else s)
+        # The axis moves by w x a: what a change of the axis is worth, times that, is w . (a x worth).
+        combined = [
+            (_NOTHING, _cross(axis, ratio * self._frame[row] + rate * part * self._direction))
+            for row, part in ((0, first), (1, second))
+        ]
+        # Along the opposite any turn by half a circle leads back: one of them.
+        left = (pi, 0.0) if against else (ratio * first, ratio * second)
+        return np.array(left), state.rates(combined)
 
     def in_words(self, q: Array) -> str:
         """How far posture q (n,) is from keeping it."""
-        x, y, z = np.round(self._link.at(q).rotation @ self._axis, 4) + 0.0
+        x, y, z = np.round(self._link.at(q).pose.rotation @ self._axis, 4) + 0.0
         angle = float(np.degrees(np.linalg.norm(self.residual(q))))
         return f"the axis of {self._of} points along ({x:g}, {y:g}, {z:g}), {angle:.6g} deg off"
 
@@ -68,6 +67,11 @@ def across(direction: Array) -> Array:
     first = np.cross(direction, least)
     first /= np.linalg.norm(first)
     return np.array([first, np.cross(direction, first)])
+
+
+def _cross(a: Array, b: Array) -> Vector3:
+    (ax, ay, az), (bx, by, bz) = a.tolist(), b.tolist()
+    return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
 
 
 def _ratio(c: float, s: float) -> tuple[float, float]:

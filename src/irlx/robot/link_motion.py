@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
 from irlx.robot.kinematics import Kinematics
+from irlx.solids.placement import Vector3
 
 Array = NDArray[np.float64]
 
@@ -16,42 +17,46 @@ _ALIGNED = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
 
 
 class LinkState(NamedTuple):
-    """A link at one posture, in the root frame: rotation (3, 3) and position (3,) m of its frame.
+    """A link at one posture: its `pose`, an SE3 in the root frame, and how a joint step d moves it.
 
-    `linear` and `angular` (3, n): velocity of the frame's origin, and angular velocity, of a joint step.
+    `jacobian` (6, n) times d is the motion of the joint that carries the link: that of its origin in the
+    root frame, then the turn w. The link's origin lies `arm` (m, in the root frame) from there, and moves
+    by w x arm beside.
     """
 
-    rotation: Array
-    position: Array
-    linear: Array
-    angular: Array
+    pose: pin.SE3
+    arm: Vector3
+    jacobian: Array
+
+    def rates(self, coefficients: list[tuple[Vector3, Vector3]]) -> Array:
+        """Rows (k, n) of k combinations  a . v + b . w  of the link's velocity v and turn w, by a and b."""
+        px, py, pz = self.arm
+        rows = []
+        for (ax, ay, az), (bx, by, bz) in coefficients:
+            # a . (w x arm) = w . (arm x a).
+            rows.append([ax, ay, az, bx + py * az - pz * ay, by + pz * ax - px * az, bz + px * ay - py * ax])
+        return np.asarray(np.array(rows) @ self.jacobian)
 
 
 class LinkMotion:
-    """States of one link of a robot; the last one is kept, since residual and derivative ask for the same."""
+    """States of one link of a robot."""
 
     def __init__(self, kinematics: Kinematics, link: str) -> None:
         self._model = kinematics.model
-        self._data = self._model.createData()
+        self._data: Any = self._model.createData()
         self._joint, self._in_joint = kinematics.body_of(link)
-        self._q = np.full(kinematics.joints, np.nan)
-        self._state: LinkState | None = None
+        self._at_joint = bool(self._in_joint.isIdentity(0.0))
+        self._still = np.zeros((6, kinematics.joints))
 
     def at(self, q: Array) -> LinkState:
-        """The link's state at posture q (n,); valid until the next call."""
-        if self._state is None or not np.array_equal(q, self._q):
-            self._state, self._q = self._state_at(q), np.array(q)
-        return self._state
-
-    def _state_at(self, q: Array) -> LinkState:
-        pin.computeJointJacobians(self._model, self._data, q)
-        pose = self._data.oMi[self._joint] * self._in_joint
+        """The link's state at posture q (n,)."""
         if self._joint == 0:
-            nothing = np.zeros((3, q.size))
-            return LinkState(pose.rotation.copy(), pose.translation.copy(), nothing, nothing)
+            return LinkState(self._in_joint, (0.0, 0.0, 0.0), self._still)
+        pin.computeJointJacobians(self._model, self._data, q)
         jacobian = pin.getJointJacobian(self._model, self._data, self._joint, _ALIGNED)
-        angular = jacobian[3:]
-        arm = pose.translation - self._data.oMi[self._joint].translation
-        # The origin of the link moves by w x arm beside that of its joint: w x arm = -[arm]x w.
-        linear = jacobian[:3] - pin.skew(arm) @ angular
-        return LinkState(pose.rotation.copy(), pose.translation.copy(), linear, angular)
+        pose = self._data.oMi[self._joint]
+        if self._at_joint:
+            return LinkState(pin.SE3(pose), (0.0, 0.0, 0.0), jacobian)
+        moved = pose * self._in_joint
+        x, y, z = (moved.translation - pose.translation).tolist()
+        return LinkState(moved, (x, y, z), jacobian)

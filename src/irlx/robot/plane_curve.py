@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
+from functools import cached_property
 from math import hypot, inf
 from typing import NamedTuple
 
@@ -16,6 +17,7 @@ SPACING = 0.01
 
 _LEAST_SAMPLES = 16
 _MOST_STEPS = 50
+_FLAT = 1e-12
 _ROUNDING = 1e-14
 
 
@@ -62,12 +64,23 @@ class PlaneCurve:
         ]
         self.parameters = np.concatenate([*parts, self._knots[-1:]])
         self.samples = self._values(self.parameters, 0)
+        self._half_squares = 0.5 * np.sum(self.samples**2, axis=1)
         self._rounding = _ROUNDING * float(self._knots[-1] + np.max(np.abs(self.samples)))
 
-    @property
+    @cached_property
     def ends(self) -> tuple[CurvePoint, CurvePoint]:
         """Its first and its last point."""
         return self._at(0.0, None), self._at(self._begins[-1], None)
+
+    @cached_property
+    def _straight(self) -> tuple[tuple[CurvePoint, float], ...]:
+        """The open ends, and on which side of them the curve goes on straight."""
+        return () if self._closed else ((self.ends[0], -1.0), (self.ends[1], 1.0))
+
+    @cached_property
+    def is_straight(self) -> bool:
+        """Whether it is a straight line."""
+        return not self._closed and float(np.max(np.abs(self.curvatures()))) < _FLAT
 
     def curvatures(self) -> Array:
         """Curvature, 1/m, at the `parameters` (N,); infinite where the curve stands still or turns back."""
@@ -82,9 +95,10 @@ class PlaneCurve:
         Sought among samples of the whole curve, then by Newton's method: the same for a point wherever the
         one before it was.
         """
-        index = int(np.argmin((self.samples[:, 0] - x) ** 2 + (self.samples[:, 1] - y) ** 2))
+        # |s - p|^2 without what is the same for all samples s.
+        index = int(np.argmin(self._half_squares - self.samples @ np.array([x, y])))
         found = self._at(self._refined(index, x, y), (x, y))
-        for beyond in () if self._closed else self._beyond(x, y):
+        for beyond in self._beyond(x, y):
             if abs(beyond.offset) < hypot(x - found.x, y - found.y):
                 found = beyond
         return found
@@ -121,7 +135,7 @@ class PlaneCurve:
     def _beyond(self, x: float, y: float) -> list[CurvePoint]:
         """Feet of (x, y) on the straight ends, where it has any."""
         found = []
-        for end, side in zip(self.ends, (-1.0, 1.0), strict=True):
+        for end, side in self._straight:
             ahead = end.tx * (x - end.x) + end.ty * (y - end.y)
             if side * ahead > 0.0:
                 offset = end.tx * (y - end.y) - end.ty * (x - end.x)
