@@ -47,6 +47,7 @@ from irlx.pacing.inputs import answer_of_inputs
 from irlx.pacing.joint_moves import move_joints
 from irlx.pacing.kept_clear import kept_clear
 from irlx.pacing.motion import Motion
+from irlx.pacing.moved_constraints import moved_constraints
 from irlx.pacing.nearest_rows import nearest_rows
 from irlx.pacing.notes import Notes
 from irlx.pacing.options import LimitsInForce, Options, SwitchBlock
@@ -90,6 +91,7 @@ class Pacer:
         self._links_checked = False
         self._clearance = kept_clear(setup.kinematics, setup.scene, self.options)
         self._rest: MoveBlock | None = None
+        self._constraints = setup.kinematics.constraints
         self._programmed: Pose | None = None
         """Where the path of the last move ended, if it was one WITH TOLERANCE."""
 
@@ -287,16 +289,29 @@ class Pacer:
         if isinstance(block, LimitSwitchBlock):
             self.warnings += check_limit(block, self._robot, self.setup.limits, self.q, place)
         if isinstance(block, FreezeBlock):
-            check_frozen(block, self._robot, place)
-            if not self.setup.may_free:
-                options = self.options.after(block, self.q)
-                check_spare(options, self.setup.kinematics, None, self.locate)
+            self._freeze(block, place)
         if isinstance(block, CriterionBlock) and block.choice is not None:
             from irlx.pacing.criteria import check_criterion
 
             check_criterion(block.choice, self._robot, place)
         if isinstance(block, ObstacleBlock):
             pairs_of(block.name, self.setup.kinematics, self.setup.scene, place)
+
+    def _freeze(self, block: FreezeBlock, place: Place) -> None:
+        """From now on ticks meet only what the other joints can break. Raises PacingError as checks do."""
+        check_frozen(block, self._robot, place)
+        free = np.ones(self.q.size, dtype=bool)
+        free[[number - 1 for number in block.joints]] = False
+        kinematics = self.setup.kinematics
+        constraints = moved_constraints(self._constraints, self._robot, self.q, free)
+        if constraints != kinematics.constraints:
+            kinematics = kinematics.constrained(constraints)
+        if not self.setup.may_free:
+            check_spare(self.options.after(block, self.q), kinematics, None, self.locate)
+        if kinematics is not self.setup.kinematics:
+            self._setup = replace(self._setup, kinematics=kinematics)
+            self._solver = self._new_solver()
+            self._clearance = kept_clear(kinematics, self._setup.scene, self.options)
 
     def _motion(self, moves: list[MoveBlock]) -> Motion:
         """The first motion from stop to stop that moves become."""

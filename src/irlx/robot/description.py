@@ -108,10 +108,24 @@ class RobotDescription:
     @cached_property
     def reach(self) -> float:
         """Upper bound of the distance between the first axis and the tool, m, all slides at the far end."""
-        start = self.chain.index(self.axes[0]) + 1 if self.axes else 0
-        total = sum(sum(c * c for c in joint.xyz) ** 0.5 for joint in self.chain[start:])
-        for joint in self.axes:
-            if joint.is_prismatic:
+        return self._farthest_from(self.axes[0]) if self.axes else self._farthest_from(None)
+
+    @cached_property
+    def lever(self) -> float:
+        """Upper bound of the distance between the first turning axis and the tool, m.
+
+        What a turn of one rad is worth at the tool, at most: strokes of slides that carry the whole arm, a
+        rail or a platform, have no part in it. That of `reach` where no axis turns.
+        """
+        turning = next((joint for joint in self.axes if not joint.is_prismatic), None)
+        return self.reach if turning is None else self._farthest_from(turning)
+
+    def _farthest_from(self, first: Joint | None) -> float:
+        """Length of the chain behind an axis, m, its slides at their far ends; 1 where that is 0."""
+        start = self.chain.index(first) if first is not None else -1
+        total = sum(sum(c * c for c in joint.xyz) ** 0.5 for joint in self.chain[start + 1 :])
+        for joint in self.chain[max(start, 0) :]:
+            if joint.is_prismatic and joint in self.axes:
                 stroke = max(abs(joint.lower), abs(joint.upper))
                 total += stroke if stroke != inf else 0.0
         return total if total > 0.0 else 1.0

@@ -108,7 +108,7 @@ class Kinematics:
         conditions = sum(len(item.residual(np.zeros(self.joints))) for item in self.constraints)
         self.rows = self.task.size + conditions
         scale = np.ones(self.rows)
-        scale[: self.task.linear] /= description.reach
+        scale[: self.task.linear] /= description.lever
         self.row_scale = scale
 
     def constrained(self, constraints: Sequence[Constraint]) -> Kinematics:
@@ -203,9 +203,9 @@ class Kinematics:
             matrix = pin.Jlog6(apart) @ apart.inverse().action @ matrix
         if not self.constraints:
             return left, matrix
-        residuals = [-item.residual(q) for item in self.constraints]
-        derivatives = [item.derivative(q) for item in self.constraints]
-        return np.concatenate([left, *residuals]), np.vstack([matrix, *derivatives])
+        rows = [item.rows(q) for item in self.constraints]
+        residuals, derivatives = zip(*rows, strict=True)
+        return np.concatenate([left, *(-one for one in residuals)]), np.concatenate([matrix, *derivatives])
 
     def sizes(self, left: Array) -> Sizes:
         """What is left (m,), as `difference` gives it first, in three numbers."""
