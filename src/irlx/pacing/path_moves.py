@@ -28,7 +28,6 @@ from irlx.pacing.posture_term import PostureTerm
 from irlx.pacing.rows import MotionRows, PathPart, handed_out, held
 from irlx.pacing.situation import Situation
 from irlx.promises import PATH_ORIENTATION, PATH_POSITION
-from irlx.robot.task import pose_errors
 
 Array = NDArray[np.float64]
 
@@ -184,7 +183,7 @@ def _tool(situation: Situation, paced: PacedPath) -> tuple[Array, Array, Array, 
         return nothing, nothing, position, rotation
     kinematics = situation.kinematics
     rotation, position = kinematics.tool_poses(paced.q)
-    distance, angle = pose_errors(kinematics.task, _wanted(paced.demands), (rotation, position))
+    distance, angle = kinematics.errors(paced.q, _wanted(paced.demands))
     return distance, angle, position, rotation
 
 
