@@ -19,6 +19,7 @@ from irlx.pacing.demand import Demand
 from irlx.pacing.drawn_to import check_postures, postures_asked, term_of, warn_of_posture_left
 from irlx.pacing.errors import PacingError
 from irlx.pacing.impossible import Surroundings, explain_failure, goal_shortfall, slower_than_allowed
+from irlx.pacing.left_out import AskedPose, asked_poses, check_on_path
 from irlx.pacing.motion import Motion
 from irlx.pacing.nearest_rows import NearestRows, nearest_of
 from irlx.pacing.options import LimitsInForce
@@ -96,6 +97,8 @@ def _motion(
         around = Surroundings(situation.kinematics, in_force.limits, situation.free, told, clear, situation.q)
         goal = goal_shortfall(around, plan.path.end_rotation, plan.path.end_position, situation.q)
         raise PacingError(explain_failure(paced, around, plan, situation.tick + 1, goal, place))
+    asked = _asked(legs, plan, *situation.pose)
+    check_on_path(asked, paced.q, paced.demands, (situation.kinematics, in_force.limits, situation.free))
     warn_of_posture_left(situation, drawn, paced.q[-1], block, place)
     rows = _rows(situation, block, plan, paced)
     touched = len(plan.ends)
@@ -103,6 +106,18 @@ def _motion(
     if touched > 1:
         handed = handed_out(rows, moves[:touched], plan.ends)
     return Motion(tuple(handed), in_force, rest, plan.rooms)
+
+
+def _asked(legs: Sequence[Leg], plan: PlannedChain, rotation: Array, position: Array) -> list[AskedPose]:
+    """The poses that a motion from a pose of the tool is led to."""
+    start, found = (rotation, position), list[AskedPose]()
+    for leg in legs[: plan.legs]:
+        start = end_of_move(leg.block, start, leg.place)
+        found += asked_poses(leg.block, start, leg.place)
+    if plan.points:
+        leg = legs[plan.legs]
+        found += asked_poses(leg.block, start, leg.place, plan.points)
+    return found
 
 
 def _rest(block: MoveBlock, plan: PlannedChain) -> MoveBlock:

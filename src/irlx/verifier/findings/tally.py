@@ -54,6 +54,10 @@ class Tally:
             if self._first is None or found.tick < self._first.tick:
                 self._first = found
 
+    def add_other(self, rows: Integers, value: Floats, allowed: float, usual: float) -> None:
+        """Add values of which more is `allowed` than is `usual` for those of `add`."""
+        self.add(rows, value, allowed, rank=value / allowed * usual)
+
     def _finding(
         self, rows: Integers, value: Floats, allowed: Floats, flat: int, unit: str, pair: str | None
     ) -> Finding:

@@ -113,10 +113,10 @@ class ArcWay:
         """Length of the way, m."""
         return self._shape.travel / self._shape.flatness
 
-    def deviation(self, positions: Floats, rotations: Floats) -> PathDeviation:
-        """Deviation of the next rows (positions (R, 3), rotations (R, 3, 3)) from the arc."""
+    def deviation(self, positions: Floats, attitudes: Floats) -> PathDeviation:
+        """Deviation of the next rows (positions (R, 3), attitudes (R, ..)) from the arc."""
         if self._chord is not None:
-            return self._chord.deviation(positions, rotations)
+            return self._chord.deviation(positions, attitudes)
         shape = self._shape
         angles = self._rounds(shape.angles(positions))
         inside = np.clip(angles, 0.0, shape.travel)
@@ -124,22 +124,22 @@ class ArcWay:
         # Of rows more than a whole turn apart nobody can tell how many turns they make, nor what share of
         # the way that is.
         if self._most_step < WHOLE_TURN:
-            travel, off_turn = shape.travel, self._off_turn(inside, rotations)
+            travel, off_turn = shape.travel, self._off_turn(inside, attitudes)
         else:
             travel, off_turn = float(inside[-1]), np.zeros(len(inside))
         return PathDeviation(off_circle, off_turn, inside / shape.flatness, travel / shape.flatness, False)
 
-    def _off_turn(self, inside: Floats, rotations: Floats) -> Floats:
+    def _off_turn(self, inside: Floats, attitudes: Floats) -> Floats:
         share = inside / self._shape.travel
         if len(self._turns) == 1:
-            return self._turns[0].off(share, rotations)
+            return self._turns[0].off(share, attitudes)
         before = inside < self._shape.via
         part = self._shape.via / self._shape.travel
         to_via, from_via = self._turns
         return np.where(
             before,
-            to_via.off(eased(share / part), rotations, before),
-            from_via.off(1.0 - eased((1.0 - share) / (1.0 - part)), rotations, ~before),
+            to_via.off(eased(share / part), attitudes, before),
+            from_via.off(1.0 - eased((1.0 - share) / (1.0 - part)), attitudes, ~before),
         )
 
     def _rounds(self, angles: Floats) -> Floats:

@@ -12,7 +12,7 @@ from irlx.streams.joint_stream import Floats, Integers
 from irlx.verifier.geometry.blends import Blend
 from irlx.verifier.geometry.corners import Corner, distance_taken
 from irlx.verifier.geometry.curves import Curve, Pose
-from irlx.verifier.geometry.rotations import angle_between
+from irlx.verifier.geometry.task_turns import turned_off
 
 FIRST_LOOK = 64
 """Rows looked at together on a part at first, then twice as many, and so on."""
@@ -110,7 +110,7 @@ class ChainWay:
         self._near, self._along = (self._part, way), way
 
     def take(self, positions: Floats, rotations: Floats, final: bool) -> Placed:
-        """Place the next rows (positions (R, 3), rotations (R, 3, 3)), or the first of them.
+        """Place the next rows (positions (R, 3), attitudes (R, ..)), or the first of them.
 
         Where a blend's distance has to be found out, rows wait until the next leg is reached: they have to be
         given again, with more behind them. With `final` there are no more.
@@ -251,7 +251,7 @@ class ChainWay:
             )
             placed.leg[here] = leg + (at > blend.corner)
         else:
-            turned, along = angle_between(rotations[here], curve.rotations(at)), base + at
+            turned, along = turned_off(rotations[here], curve.rotations(at)), base + at
             placed.leg[here] = leg
         placed.position[here], placed.along[here] = off, along
         placed.orientation[here] = turned

@@ -12,7 +12,7 @@ from irlx.promises import PATH_ORIENTATION, PATH_POSITION, PATH_STEP
 from irlx.streams.joint_stream import Floats, Integers
 from irlx.verifier.geometry.blends import TANGENTS, Blend
 from irlx.verifier.geometry.curves import Curve, Pose
-from irlx.verifier.geometry.rotations import angle_between
+from irlx.verifier.geometry.task_turns import turned_off
 
 ON_A_LEG = 1e-8
 """Rows that are nearer to both legs than this, m, tell nothing of the blend between them."""
@@ -126,8 +126,8 @@ def _worst(legs: tuple[Curve, Curve], distance: float, rows: _Rows) -> float:
     first, second = legs
     before, behind = np.minimum(rows.way, first.length - distance), np.maximum(rows.there, distance)
     offs = [
-        (first.points(before), angle_between(rows.rotations, first.rotations(before))),
-        (second.points(behind), angle_between(rows.rotations, second.rotations(behind))),
+        (first.points(before), turned_off(rows.rotations, first.rotations(before))),
+        (second.points(behind), turned_off(rows.rotations, second.rotations(behind))),
     ]
     if distance > PATH_STEP:
         blend = Blend(first, second, distance)

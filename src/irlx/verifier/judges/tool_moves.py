@@ -9,6 +9,7 @@ import numpy as np
 
 from irlx.blocks import MoveKind
 from irlx.promises import (
+    FOLLOWED_TURN,
     PATH_ORIENTATION,
     PATH_POSITION,
     PATH_STEP,
@@ -22,7 +23,7 @@ from irlx.verifier.demands import Demand
 from irlx.verifier.evidence import Evidence
 from irlx.verifier.findings.finding import Check
 from irlx.verifier.geometry.paths import LineWay
-from irlx.verifier.geometry.rotations import angle_between
+from irlx.verifier.geometry.task_turns import followed_off, turned_off
 from irlx.verifier.judges.chained_moves import HANDS_OVER, ChainRows, ChainTallies
 from irlx.verifier.moves import MoveRows
 from irlx.verifier.rows import Rows, Stretch
@@ -83,7 +84,7 @@ class ToolMoveChecks:
             return
         here = stretch.after
         final = int(stretch.rows[-1]) == chain[-1].move.last
-        self._chain.take((rows.positions[here], rows.rotations[here]), stretch.rows, stretch.block, final)
+        self._chain.take((rows.positions[here], rows.attitudes[here]), stretch.rows, stretch.block, final)
 
     def _chain_of(self, chain: tuple[Demand, ...]) -> ChainRows | None:
         tallies = ChainTallies(self._goal, self._path, self._progress, self._speed, self._acceleration)
@@ -155,11 +156,14 @@ class ToolMoveChecks:
             return
         row = np.array([move.last])
         self._goal[0].add(row, np.linalg.norm((reached[0] - goal[0])[None], axis=1), PATH_POSITION)
-        self._goal[1].add(row, angle_between(reached[1], goal[1])[None], PATH_ORIENTATION)
+        attitude = self._evidence.placer.attitude(reached[1], self._evidence.posture(move.last))
+        self._goal[1].add(row, turned_off(attitude, goal[1]), PATH_ORIENTATION)
+        if demand.gives_orientation:
+            self._goal[1].add_other(row, followed_off(attitude, goal[1]), FOLLOWED_TURN, PATH_ORIENTATION)
 
     def _add_path(self, rows: Rows, stretch: Stretch, course: Course) -> None:
         assert course.way is not None
-        found = course.way.deviation(rows.positions[stretch.after], rows.rotations[stretch.after])
+        found = course.way.deviation(rows.positions[stretch.after], rows.attitudes[stretch.after])
         self._path[0].add(stretch.rows, found.position, PATH_POSITION)
         self._path[1].add(stretch.rows, found.orientation, PATH_ORIENTATION)
         along = np.concatenate([self._along, found.along])
@@ -189,7 +193,7 @@ class ToolMoveChecks:
         here = stretch.after
         positions, rotations = rows.before(stretch)
         moved = np.linalg.norm(rows.positions[here] - positions, axis=1)
-        turned = angle_between(rows.rotations[here], rotations)
+        turned = turned_off(rows.attitudes[here], rotations)
         for way, bound, unit in (
             (moved, course.speed, "m/s"),
             (turned, course.move.law.speed_ori, "rad/s"),
