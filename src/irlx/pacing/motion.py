@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from irlx.blocks import MoveBlock
 from irlx.pacing.options import LimitsInForce
+from irlx.pacing.posed import Pose
 from irlx.pacing.rows import MotionRows
 
 
@@ -14,11 +15,13 @@ class Motion:
     """Rows of the first moves of several, one entry a move (None where it moves nothing), and their limits.
 
     `rest` is what is left of the last of these moves where the motion stops on its way, None where it does
-    not. `rooms`: how far a corner to another kind of move may reach into the first and the last of the moves,
-    in the unit of `MotionRows.s`: half of them, of a SPLINE half of the way to its next point.
+    not; `end` the pose that was asked for there, from which it goes on. `rooms`: how far a corner to another
+    kind of move may reach into the first and the last of the moves, in the unit of `MotionRows.s`: half of
+    them, of a SPLINE half of the way to its next point.
     """
 
     rows: tuple[MotionRows | None, ...]
     in_force: LimitsInForce
     rest: MoveBlock | None = None
     rooms: tuple[float, float] = (0.0, 0.0)
+    end: Pose | None = None

@@ -88,6 +88,7 @@ class Pacer:
         self._links_checked = False
         self._clearance = kept_clear(setup.kinematics, setup.scene, self.options)
         self._rest: MoveBlock | None = None
+        self._asked: tuple[Array, Array] | None = None
 
     def _new_solver(self) -> TickSolver:
         """What solves the ticks: roughly in a dry run."""
@@ -145,6 +146,7 @@ class Pacer:
             self.warnings,
             self.notes,
             self._clear_from_now,
+            self._asked,
         )
 
     @property
@@ -211,6 +213,8 @@ class Pacer:
             parts.append(Executed(block, tick, self._moved(found, motion.in_force), begins))
             begins = True
         self._rest = motion.rest
+        # A tool that meets a point in part only goes on from the point all the same.
+        self._asked = motion.end if self._setup.kinematics.leaves_turns else None
         if motion.rest is not None:
             waiting.insert(0, motion.rest)
         return Carried(tuple(parts), motion.rooms)

@@ -56,7 +56,8 @@ class Situation:
     """The robot at rest in posture `q` (n,) at a tick, the options in force, and what solves its ticks.
 
     `warnings` and `notes` collect what is found on the way, also before an error; `clearance` is what is kept
-    clear.
+    clear. `asked` is the pose that was asked for where a move goes on that had to stop on its way, None where
+    that is the pose of the tool.
     """
 
     setup: PacingSetup
@@ -69,6 +70,7 @@ class Situation:
     warnings: list[Diagnostic]
     notes: Notes
     clearance: Clearance | None = None
+    asked: tuple[Array, Array] | None = None
 
     @property
     def kinematics(self) -> Kinematics:
@@ -92,8 +94,8 @@ class Situation:
 
     @property
     def pose(self) -> tuple[Array, Array]:
-        """Rotation (3, 3) and position (3,) m of the tool in the world."""
-        return self.kinematics.tool_pose(self.q)
+        """Rotation (3, 3) and position (3,) m of the tool in the world, or those asked for."""
+        return self.kinematics.tool_pose(self.q) if self.asked is None else self.asked
 
     def in_force(self, clauses: Iterable[LimitClause] = ()) -> LimitsInForce:
         """Joint limits of a motion with its own clauses."""

@@ -339,6 +339,11 @@ class Kinematics:
         return Task(tuple(name for name in self.task.left_out if name not in free and name not in still))
 
     @cached_property
+    def leaves_turns(self) -> bool:
+        """Whether joints turn the tool in ways that nobody asks for: a pose met is not the pose asked for."""
+        return bool(self.description.free) or self.following.size > 0
+
+    @cached_property
     def unbound(self) -> Task:
         """Those of `following` that joints move whatever the others are."""
         own = list(self.task.rows)

@@ -127,7 +127,19 @@ class ArcWay:
             travel, off_turn = shape.travel, self._off_turn(inside, attitudes)
         else:
             travel, off_turn = float(inside[-1]), np.zeros(len(inside))
-        return PathDeviation(off_circle, off_turn, inside / shape.flatness, travel / shape.flatness, False)
+        wanted = None if attitudes.shape[1] == 3 else self._wanted(inside)
+        along, length = inside / shape.flatness, travel / shape.flatness
+        return PathDeviation(off_circle, off_turn, along, length, False, wanted)
+
+    def _wanted(self, inside: Floats) -> Floats:
+        """Orientations (R, 3, 3) of the arc at angles (R,) from its start."""
+        share = inside / self._shape.travel
+        if len(self._turns) == 1:
+            return self._turns[0].at(share)
+        part = self._shape.via / self._shape.travel
+        before, behind = self._turns[0].at(eased(share / part)), eased((1.0 - share) / (1.0 - part))
+        first = (inside < self._shape.via)[:, None, None]
+        return np.asarray(np.where(first, before, self._turns[1].at(1.0 - behind)))
 
     def _off_turn(self, inside: Floats, attitudes: Floats) -> Floats:
         share = inside / self._shape.travel

@@ -85,6 +85,10 @@ class Blend:
         share = np.clip(self.way(u) / self.length, 0.0, 1.0)
         return np.asarray(np.min([turned_off(attitudes, turn.at(share)) for turn in self._turns], axis=0))
 
+    def rotations(self, u: Floats) -> Floats:
+        """Orientations (R, 3, 3) at u (R,); where there are several, one of them."""
+        return self._turns[0].at(np.clip(self.way(u) / self.length, 0.0, 1.0))
+
     @cached_property
     def _turns(self) -> list[BlendedTurn]:
         base = self._curves[1].turnings(0.0)[0].rotation

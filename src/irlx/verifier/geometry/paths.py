@@ -36,6 +36,7 @@ class PathDeviation:
 
     `position` m and `orientation` rad off the path; `along` = distance travelled, in the unit that
     gives the parameter (m, or rad where the turn does, `by_angle`); `length` of the whole way in that unit.
+    `wanted` (R, 3, 3): the path's own orientation there, told where not all turns count.
     """
 
     position: Floats
@@ -43,6 +44,7 @@ class PathDeviation:
     along: Floats
     length: float
     by_angle: bool
+    wanted: Floats | None = None
 
 
 class LineWay:
@@ -104,8 +106,10 @@ class LineWay:
         inside = np.clip(parameter, 0.0, 1.0)
         axis = turn / angle if angle > 0.0 else np.array([1.0, 0.0, 0.0])
         off_line = np.linalg.norm(offsets - inside[:, None] * self._step, axis=1)
-        off_turn = turned_from(attitudes, self._start[1], about_axis(axis, inside * angle))
-        return PathDeviation(off_line, off_turn, inside * scale, scale, self.by_angle)
+        turns = about_axis(axis, inside * angle)
+        off_turn = turned_from(attitudes, self._start[1], turns)
+        wanted = None if attitudes.shape[1] == 3 else self._start[1] @ turns
+        return PathDeviation(off_line, off_turn, inside * scale, scale, self.by_angle, wanted)
 
     def _asked_angles(
         self, axis: Floats, angles: Floats, attitudes: Floats, scale: float
@@ -135,6 +139,12 @@ class Turn:
     def __init__(self, start: Floats, goal: Floats) -> None:
         self._start = start
         self._ways = shortest_turns(start, goal)
+
+    def at(self, share: Floats) -> Floats:
+        """Rotations (R, 3, 3) at shares (R,) of the way."""
+        angle = float(np.linalg.norm(self._ways[0]))
+        axis = self._ways[0] / angle if angle > 0.0 else np.array([1.0, 0.0, 0.0])
+        return np.asarray(self._start @ about_axis(axis, share * angle))
 
     def off(self, share: Floats, attitudes: Floats, counts: NDArray[np.bool_] | None = None) -> Floats:
         """Angle (R,) rad between attitudes (R, ..) and the turn at the shares (R,) of its way.

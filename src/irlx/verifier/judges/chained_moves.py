@@ -14,6 +14,7 @@ from irlx.verifier.chain_legs import ChainLegs, end_reach
 from irlx.verifier.demands import Demand
 from irlx.verifier.findings.tally import Tally
 from irlx.verifier.geometry.chains import ChainWay, Placed
+from irlx.verifier.geometry.rotations import angle_between
 from irlx.verifier.geometry.task_turns import followed_off, turned_off
 from irlx.verifier.tools import Pose
 
@@ -93,6 +94,7 @@ class ChainRows:
         self._accelerations = np.zeros(2)
         self._speeds, self._sharp = np.zeros((3, 1)), np.zeros(1, dtype=np.bool_)
         self._furthest, self._unknown = 0.0, False
+        self._wanted = start[1][None, :3]
         first = legs.legs[0].curve
         self._reaches = min(start_reach, first.room[0]), end_reach(chain[-1])
         self._begun = _Waiting(start) if chain[0].crosses[0] else None
@@ -158,6 +160,7 @@ class ChainRows:
         self._furthest = float(way[count + 1])
         self._hint = self._furthest if len(self._legs.legs) == 1 else 0.0
         self._way.begin_at(self._furthest)
+        self._wanted = curve.rotations(way[count + 1 : count + 2])
         off = np.linalg.norm(positions[count + 1] - curve.points(way[count + 1 : count + 2]), axis=1)
         self._tallies.path[0].add(begun.rows[count + 1 : count + 2], off, PATH_POSITION)
         return (left.positions[1:], left.rotations[1:]), left.rows
@@ -266,7 +269,7 @@ class ChainRows:
         with np.errstate(divide="ignore"):
             speed = np.minimum(speed, np.sqrt(acc / placed.bend))
         moved = np.linalg.norm(np.diff(self._waiting.positions[: count + 1], axis=0), axis=1)
-        turned = turned_off(self._waiting.rotations[1 : count + 1], self._waiting.rotations[:count, :3])
+        turned = self._turned(placed)
         for way, bound, unit in (
             (np.maximum(moved, np.abs(np.diff(alongs[1:]))), speed, "m/s"),
             (turned, turn, "rad/s"),
@@ -274,6 +277,15 @@ class ChainRows:
             rates = way / dt
             high = bound * (1.0 + PROGRAM_EXCESS) + 2.0 * PATH_STEP / dt
             self._tallies.speed.add(rows, rates, bound, ~(rates <= high), rates / high, unit)
+
+    def _turned(self, placed: Placed) -> Floats:
+        """Angles (R,) rad from row to row; where not all turns count, those of the path itself."""
+        count = len(placed.along)
+        if placed.wanted is None:
+            return angle_between(self._waiting.rotations[1 : count + 1], self._waiting.rotations[:count])
+        wanted = np.concatenate([self._wanted, placed.wanted])
+        self._wanted = wanted[-1:]
+        return angle_between(wanted[1:], wanted[:-1])
 
     def _add_acceleration(
         self, rows: Integers, placed: Placed, alongs: Floats, near: tuple[Integers, Integers, Integers]

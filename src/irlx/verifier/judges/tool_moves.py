@@ -23,6 +23,7 @@ from irlx.verifier.demands import Demand
 from irlx.verifier.evidence import Evidence
 from irlx.verifier.findings.finding import Check
 from irlx.verifier.geometry.paths import LineWay
+from irlx.verifier.geometry.rotations import angle_between
 from irlx.verifier.geometry.task_turns import followed_off, turned_off
 from irlx.verifier.judges.chained_moves import HANDS_OVER, ChainRows, ChainTallies
 from irlx.verifier.moves import MoveRows
@@ -50,6 +51,7 @@ class ToolMoveChecks:
         self._time = evidence.tally("programmed time", "s")
         self._course: Course | None = None
         self._along, self._furthest = np.zeros(2), 0.0
+        self._wanted = np.eye(3)[None]
         self._skipped: dict[int, str] = {}
         self._chains = {demand.move.block.id: chain for chain in evidence.chains for demand in chain}
         self._chain: ChainRows | None = None
@@ -132,8 +134,8 @@ class ToolMoveChecks:
             if not any(demand.crosses):
                 self._add_joint_rates(rows, stretch, move)
         elif course.way is not None:
-            self._add_path(rows, stretch, course)
-            self._add_tool_speed(rows, stretch, course)
+            wanted = self._add_path(rows, stretch, course)
+            self._add_tool_speed(rows, stretch, course, wanted)
         elif course.goal is None:
             self._skipped[move.block.id] = _OTHER_FRAME
         else:
@@ -161,7 +163,8 @@ class ToolMoveChecks:
         if demand.gives_orientation:
             self._goal[1].add_other(row, followed_off(attitude, goal[1]), FOLLOWED_TURN, PATH_ORIENTATION)
 
-    def _add_path(self, rows: Rows, stretch: Stretch, course: Course) -> None:
+    def _add_path(self, rows: Rows, stretch: Stretch, course: Course) -> Floats | None:
+        """Judge rows against their path; the path's own orientation there where not all turns count."""
         assert course.way is not None
         found = course.way.deviation(rows.positions[stretch.after], rows.attitudes[stretch.after])
         self._path[0].add(stretch.rows, found.position, PATH_POSITION)
@@ -183,17 +186,24 @@ class ToolMoveChecks:
         bound = course.move.law.acc_ori if short_arc else course.bounds[1]
         self._add_acceleration(stretch, along, bound, "rad/s2" if found.by_angle else "m/s2")
         self._along = along[-2:]
+        return found.wanted
 
     def _add_acceleration(self, stretch: Stretch, along: Floats, bound: float, unit: str) -> None:
         rates = np.abs(np.diff(along, n=2)) / self._dt**2
         high = bound * (1.0 + PROGRAM_EXCESS) + 4.0 * PATH_STEP / self._dt**2
         self._acceleration.add(stretch.rows, rates, bound, ~(rates <= high), rates / high, unit)
 
-    def _add_tool_speed(self, rows: Rows, stretch: Stretch, course: Course) -> None:
+    def _add_tool_speed(self, rows: Rows, stretch: Stretch, course: Course, wanted: Floats | None) -> None:
         here = stretch.after
         positions, rotations = rows.before(stretch)
         moved = np.linalg.norm(rows.positions[here] - positions, axis=1)
-        turned = turned_off(rows.attitudes[here], rotations)
+        if wanted is None:
+            turned = angle_between(rows.rotations[here], rotations)
+        else:
+            # What of a turn does not count may make the rest of it any faster: the path itself is judged.
+            start = rotations[:1] if stretch.begins else self._wanted
+            passed = np.concatenate([start, wanted])
+            self._wanted, turned = passed[-1:], angle_between(passed[1:], passed[:-1])
         for way, bound, unit in (
             (moved, course.speed, "m/s"),
             (turned, course.move.law.speed_ori, "rad/s"),
