@@ -11,8 +11,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import irlx
-from irb6_by_hand import pose, posture
-from irlx.blocks import FreezeBlock, MoveBlock
+from irb6_by_hand import pose, posture, wrist_axes
+from irlx.blocks import FreezeBlock, MoveBlock, ReconfigureBlock
 from irlx.cell.load import load_cell
 from irlx.promises import CLOSURE, FOLLOWED_TURN
 from irlx.robot.kinematics import Kinematics
@@ -108,12 +108,21 @@ def test_along_a_line_only_the_missing_turn_is_off(tmp_path) -> None:
 
 
 def test_a_target_without_an_orientation_keeps_pitch_and_roll(tmp_path) -> None:
-    run = ran(
-        tmp_path, "  MOVE LIN (600, 300, 900);\n  MOVE PTP (650, -200, 950);\n  MOVE_INC LIN (0, 0, 50);"
-    )
-    np.testing.assert_allclose(pose(run.q[-1])[1], [0.65, -0.2, 1.0], atol=1e-12)
-    # Pitch and roll come back to what they were, but for the lean that the base makes on the way.
-    assert np.degrees(np.abs(run.q[-1] - run.q[0])[3:]).max() < 20.0
+    body = """
+      MOVE LIN (700, 0, 900);
+      MOVE LIN (600, 300, 900);
+      MOVE PTP (650, -200, 950), (600, -300, 850);
+      MOVE_INC LIN (0, 0, 50);
+      MOVE LIN PATH ((650, -100, 900), (700, 0, 900));"""
+    run = ran(tmp_path, body)
+    first, far, last = end_of(run, 0), end_of(run, 1), run.q[-1]
+    # Asked for is always the same orientation: what is made of it does not add up.
+    np.testing.assert_allclose(last, first, atol=1e-9)
+    np.testing.assert_allclose(np.degrees(first[3:]), [30.0, 0.0], atol=1e-9)
+    # What is left of it turns about n, and about nothing else.
+    left = Rotation.from_matrix(pose(first)[0] @ pose(far)[0].T).as_rotvec()
+    np.testing.assert_allclose(np.cross(left, wrist_axes(far)[:, 2]), 0.0, atol=1e-9)
+    assert np.degrees(np.linalg.norm(left)) > 20.0
 
 
 OFF = "((700, 100, 900), ORIZYX(0, 45, 20))"
@@ -225,13 +234,17 @@ def test_position_only(tmp_path) -> None:
       FREEZEEND;
       CYCLICSTART;
       MOVE LIN (500, -150, 450), ((400, 150, 600), ORIZYX(10, 20, 30)), (450, 0, 500);
-      CYCLICEND;"""
+      CYCLICEND;
+      RECONFIGURATION (40, 20, -13, 95, 9, 48, -13);
+      MOVE LIN (450, 50, 500);"""
     run = ran(tmp_path, body, ANYHOW)
     assert run.summary.returns[-1].largest < CLOSURE
     frozen = [r.tick for r in run.stream.records if isinstance(r.block, FreezeBlock)]
     rows = run.q[frozen[0] + 1 : frozen[1], 4:]
     assert np.array_equal(rows, np.broadcast_to(rows[0], rows.shape))
-    np.testing.assert_allclose(run.tool[-1, :3], [0.45, 0.0, 0.5], atol=1e-12)
+    np.testing.assert_allclose(run.tool[-1, :3], [0.45, 0.05, 0.5], atol=1e-12)
+    still = next(r.tick for r in run.stream.records if isinstance(r.block, ReconfigureBlock))
+    assert np.linalg.norm(run.q[-1] - run.q[still]) > 0.1
 
 
 def test_a_turn_on_the_spot_that_nobody_asks_for_moves_nothing(tmp_path) -> None:

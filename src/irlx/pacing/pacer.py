@@ -88,7 +88,7 @@ class Pacer:
         self._links_checked = False
         self._clearance = kept_clear(setup.kinematics, setup.scene, self.options)
         self._rest: MoveBlock | None = None
-        self._asked: tuple[Array, Array] | None = None
+        self._asked: Array | None = None
 
     def _new_solver(self) -> TickSolver:
         """What solves the ticks: roughly in a dry run."""
@@ -213,8 +213,7 @@ class Pacer:
             parts.append(Executed(block, tick, self._moved(found, motion.in_force), begins))
             begins = True
         self._rest = motion.rest
-        # A tool that meets a point in part only goes on from the point all the same.
-        self._asked = motion.end if self._setup.kinematics.leaves_turns else None
+        self._note_asked(motion)
         if motion.rest is not None:
             waiting.insert(0, motion.rest)
         return Carried(tuple(parts), motion.rooms)
@@ -249,7 +248,7 @@ class Pacer:
         situation, place = self._situation, self.locate(move.origin)
         end = posture_beyond(situation, move, situation.in_force(move.limits), place)
         self.tick += ticks_beyond(situation, move, place)
-        self.q = end
+        self.q, self._asked = end, None
 
     def execute(self, block: Block) -> MotionRows | None:
         """Execute one block; returns the rows of a move (None for a switch or a move of no length).
@@ -259,6 +258,7 @@ class Pacer:
         if isinstance(block, MoveBlock):
             motion, start = self._motion([block]), self._situation.pose[1]
             rows = self._moved(motion.rows[0], motion.in_force)
+            self._note_asked(motion)
             self._last_way = way_of(rows, start, self._setup.dt)
             return rows
         if isinstance(block, ReconfigureBlock):
@@ -278,6 +278,7 @@ class Pacer:
             pairs_of(block.name, self.setup.kinematics, self.setup.scene, place)
         if isinstance(block, ToolBlock | WeightsBlock):
             self._setup = refitted(self._setup, block, place)
+            self._asked = None if isinstance(block, ToolBlock) else self._asked
             self._solver = self._new_solver()
         if isinstance(block, SwitchBlock):
             self.options = self.options.after(block, self.q)
@@ -302,6 +303,10 @@ class Pacer:
         if block.kind is MoveKind.PTP:
             return move_joints(situation, moves, in_force)
         return move_along_path(situation, moves, in_force)
+
+    def _note_asked(self, motion: Motion) -> None:
+        """Where joints turn the tool in ways that nobody asks for, keep what was asked for last."""
+        self._asked = motion.asked if self._setup.kinematics.leaves_turns else None
 
     def _check_links(self, place: Place) -> None:
         """Before the first motion: whether the robot stands clear of itself."""

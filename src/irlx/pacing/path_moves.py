@@ -85,11 +85,10 @@ def _motion(
     for note in plan.notes:
         situation.notes.add(note)
     rest = _rest(moves[plan.legs], plan) if plan.points else None
-    stop = (plan.path.end_rotation, plan.path.end_position) if plan.points else None
     drawn = postures_asked(situation, block, plan, in_force, place)
     if plan.ticks == 0:
         warn_of_posture_left(situation, drawn, situation.q, block, place)
-        return Motion((None,), in_force, rest, end=stop)
+        return Motion((None,), in_force, rest, asked=plan.path.end_rotation)
     model = situation.model(in_force)
     term = term_of(situation, block, plan, model, drawn, in_force.limits)
     paced = pace_path(_path_motion(situation, plan, term, place), model, situation.solver)
@@ -106,7 +105,7 @@ def _motion(
     handed: list[MotionRows | None] = [rows]
     if touched > 1:
         handed = handed_out(rows, moves[:touched], plan.ends)
-    return Motion(tuple(handed), in_force, rest, plan.rooms, stop)
+    return Motion(tuple(handed), in_force, rest, plan.rooms, plan.path.end_rotation)
 
 
 def _asked(legs: Sequence[Leg], plan: PlannedChain, rotation: Array, position: Array) -> list[AskedPose]:

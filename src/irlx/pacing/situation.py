@@ -56,8 +56,8 @@ class Situation:
     """The robot at rest in posture `q` (n,) at a tick, the options in force, and what solves its ticks.
 
     `warnings` and `notes` collect what is found on the way, also before an error; `clearance` is what is kept
-    clear. `asked` is the pose that was asked for where a move goes on that had to stop on its way, None where
-    that is the pose of the tool.
+    clear. `asked` (3, 3) is the orientation that was asked for last, None where that is the tool's own: a
+    robot whose task leaves turns to the joints goes on from it, or what it makes of them would add up.
     """
 
     setup: PacingSetup
@@ -70,7 +70,7 @@ class Situation:
     warnings: list[Diagnostic]
     notes: Notes
     clearance: Clearance | None = None
-    asked: tuple[Array, Array] | None = None
+    asked: Array | None = None
 
     @property
     def kinematics(self) -> Kinematics:
@@ -94,8 +94,9 @@ class Situation:
 
     @property
     def pose(self) -> tuple[Array, Array]:
-        """Rotation (3, 3) and position (3,) m of the tool in the world, or those asked for."""
-        return self.kinematics.tool_pose(self.q) if self.asked is None else self.asked
+        """Rotation (3, 3), or that asked for, and position (3,) m of the tool in the world."""
+        rotation, position = self.kinematics.tool_pose(self.q)
+        return (rotation if self.asked is None else self.asked), position
 
     def in_force(self, clauses: Iterable[LimitClause] = ()) -> LimitsInForce:
         """Joint limits of a motion with its own clauses."""

@@ -85,6 +85,15 @@ class Placer:
         turns = self.turns
         return rotations if turns is None else turns.attitudes(rotations, turns.frames(q))
 
+    def going_on(self, stands: Place, before: Demand, block: int) -> Place:
+        """Where a block begins behind a move: where not all turns count with the orientation that was asked
+        for there last, unless the tool is another one since."""
+        asked = before.end.pose
+        same = self.tools.number(block) == self.tools.number(before.move.block.id)
+        if self.turns is None or stands.pose is None or asked is None or not same:
+            return stands
+        return Place((stands.pose[0], asked[1]), stands.posture)
+
     def of_posture(self, q: Floats, block: int) -> Pose | None:
         """Pose of the tool of a block in posture q (n,)."""
         if self.robot is None:
@@ -154,6 +163,8 @@ def demands_of(outline: Outline, moves: list[MoveRows], placer: Placer) -> list[
     for move in moves:
         follows = bool(found) and found[-1].passes
         start = found[-1].end if follows else ends.place(move.start, move.block.id)
+        if found and not follows:
+            start = placer.going_on(start, found[-1], move.block.id)
         targets = placer.all_of(move, start)
         end = placer.end(move, start, targets)
         passes = move.block.id in joinable and not _stands(outline, move, end, ends)

@@ -201,7 +201,8 @@ class ToolMoveChecks:
             turned = angle_between(rows.rotations[here], rotations)
         else:
             # What of a turn does not count may make the rest of it any faster: the path itself is judged.
-            start = rotations[:1] if stretch.begins else self._wanted
+            begins = self._evidence.demands[course.move.block.id].start.pose
+            start = begins[1][None] if stretch.begins and begins is not None else self._wanted
             passed = np.concatenate([start, wanted])
             self._wanted, turned = passed[-1:], angle_between(passed[1:], passed[:-1])
         for way, bound, unit in (
