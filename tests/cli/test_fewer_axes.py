@@ -155,6 +155,14 @@ def test_what_five_axes_do_not_meet_is_refused_with_what_is_missing(tmp_path, mo
     ran(tmp_path, before + "  " + move.format(off=nearest), declarations=declarations)
 
 
+def test_out_of_reach_is_what_only_a_leaning_tool_would_reach(tmp_path) -> None:
+    """The pitch ends at 90 deg; past it the arm could only lean aside, which is not counted as reached."""
+    found = refused(tmp_path, "  MOVE LIN ((700, 0, 900), ORIZYX(0, -120, 0));")
+    assert found.code == "IRL520"
+    assert "the target itself is out of reach" in found.message
+    assert "leaves 0 mm and 30 deg" in found.message
+
+
 def test_nothing_of_a_refused_move_is_carried_out(tmp_path) -> None:
     program = written(tmp_path, f"  MOVE LIN (700, 0, 900);\n  MOVE LIN {OFF};")
     with pytest.raises(irlx.RunError) as caught:

@@ -92,12 +92,14 @@ def _motion(
     model = situation.model(in_force)
     term = term_of(situation, block, plan, model, drawn, in_force.limits)
     paced = pace_path(_path_motion(situation, plan, term, place), model, situation.solver)
+    asked = _asked(legs, plan, *situation.pose)
     if isinstance(paced, Failure):
         told, clear = in_force.told, situation.clearance
         around = Surroundings(situation.kinematics, in_force.limits, situation.free, told, clear, situation.q)
-        goal = goal_shortfall(around, plan.path.end_rotation, plan.path.end_position, situation.q)
+        goal = goal_shortfall(
+            around, plan.path.end_rotation, plan.path.end_position, situation.q, bool(asked)
+        )
         raise PacingError(explain_failure(paced, around, plan, situation.tick + 1, goal, place))
-    asked = _asked(legs, plan, *situation.pose)
     check_on_path(asked, paced.q, paced.demands, (situation.kinematics, in_force.limits, situation.free))
     warn_of_posture_left(situation, drawn, paced.q[-1], block, place)
     rows = _rows(situation, block, plan, paced)
