@@ -13,6 +13,9 @@ from irlx.cell.load import load_cell
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.task import framed_difference, partial_difference
 from irlx.transform.criteria.posture import Posture
+from irlx.transform.measures.dynamic_manipulability import DynamicManipulability
+from irlx.transform.measures.manipulability import Manipulability
+from irlx.transform.measures.smallest_singular_value import SmallestSingularValue
 from irlx.transform.qp.proxqp import ProxQpSolver
 from irlx.transform.step_bounds import BoundSource, StepBounds
 from irlx.transform.tick import TickSolver, TickStatus
@@ -197,3 +200,31 @@ def test_in_the_tool_frame_both_forms_agree(robot, arm) -> None:
         other = framed_difference(arm.task, at.rotation, at, jacobian, jacobian[3:], target)
         for a, b in zip(one, other, strict=True):
             np.testing.assert_allclose(a, b, atol=1e-12)
+
+
+def slope(function, q: np.ndarray, h: float = 1e-4) -> np.ndarray:
+    """Derivative by q: central differences of fourth order."""
+    columns = []
+    for step in h * np.eye(q.size):
+        one, two = function(q + step) - function(q - step), function(q + 2 * step) - function(q - 2 * step)
+        columns.append((8.0 * one - two) / (12.0 * h))
+    return np.stack(columns, axis=-1)
+
+
+@pytest.mark.parametrize("link", [None, "column", "forearm", "wrist", "flange"])
+@pytest.mark.parametrize("kind", [Manipulability, SmallestSingularValue, DynamicManipulability])
+def test_gradients_of_measures_of_its_rows(robot, kind, link: str | None) -> None:
+    """The rows turn with the frame: their derivative has a part of that."""
+    measure = kind(Kinematics(replace(robot, task_frame=link)))
+    rng = np.random.default_rng(21)
+    for _ in range(3):
+        q = rng.uniform(-0.6, 0.6, 5)
+        due = slope(measure.value, q)
+        np.testing.assert_allclose(measure.gradient(q), due, atol=1e-7 * max(1.0, np.max(np.abs(due))))
+
+
+def test_manipulability_does_not_know_the_roll(arm) -> None:
+    measure = Manipulability(arm)
+    for q in postures(22, 5):
+        assert abs(measure.gradient(q)[4]) < 1e-14
+        assert measure.value(q) == pytest.approx(abs(np.linalg.det(arm.here(q)[1])) / 1.465**3, rel=1e-9)
