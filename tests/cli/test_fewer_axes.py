@@ -289,6 +289,70 @@ def test_a_planar_arm_that_may_turn(tmp_path) -> None:
     assert found.code == "IRL430"
 
 
+def test_a_palletizer_has_four(tmp_path) -> None:
+    """With its hand held straight down no joint tilts the tool: what is left is where it is and its turn."""
+    robot = IRB6 + 'task = ["x", "y", "z", "rx"]\nlocked = { joint_4 = 90 }\n'
+    body = (
+        "  MOVE LIN ((600, 200, 700), ORIZYX(30, 90, 0));\n  MOVE PTP ((550, -300, 750), ORIZYX(-60, 90, 0));"
+    )
+    run = ran(tmp_path, body, robot)
+    assert run.q.shape[1] == 4
+    rotation, position = pose(np.array([*run.q[-1][:3], np.pi / 2, run.q[-1][3]]))
+    np.testing.assert_allclose(position, [0.55, -0.3, 0.75], atol=1e-12)
+    # Down along x, and turned about the vertical so that y points by -60 deg from its place.
+    np.testing.assert_allclose(rotation[:, 0], [0, 0, -1], atol=1e-12)
+    np.testing.assert_allclose(rotation[:2, 1], [np.sin(np.pi / 3), 0.5], atol=1e-12)
+    found = refused(tmp_path, "  MOVE LIN ((600, 200, 600), ORIZYX(30, 80, 0));", robot)
+    assert found.code == "IRL430"
+    assert "in the frame of the link 'wrist'" in found.message
+
+
+TELESCOPE = """<robot name="telescope">
+  <link name="base"/>
+  <joint name="turn" type="revolute"><parent link="base"/><child link="mast"/>
+    <axis xyz="0 0 1"/><limit lower="-3" upper="3" velocity="1"/></joint>
+  <link name="mast"/>
+  <joint name="second" type="prismatic"><parent link="mast"/><child link="inner"/><origin xyz="0.3 0 0"/>
+    <axis xyz="1 0 0"/><limit lower="0" upper="0.4" velocity="1"/>
+    <mimic joint="first" multiplier="2" offset="0.05"/></joint>
+  <link name="inner"><collision><geometry><box size="0.2 0.05 0.05"/></geometry></collision></link>
+  <joint name="first" type="prismatic"><parent link="inner"/><child link="outer"/><origin xyz="0.1 0 0"/>
+    <axis xyz="1 0 0"/><limit lower="0" upper="0.3" velocity="1"/></joint>
+  <link name="outer"><collision><geometry><box size="0.1 0.04 0.04"/></geometry></collision></link>
+  <joint name="wrist" type="revolute"><parent link="outer"/><child link="tool"/><origin xyz="0.1 0 0"/>
+    <axis xyz="0 0 1"/><limit lower="-3" upper="3" velocity="1"/></joint>
+  <link name="tool"/>
+</robot>"""
+
+
+def test_a_telescope_whose_second_slide_follows_the_first(tmp_path) -> None:
+    """The follower is before its leader, twice as fast, and its limit is the one that counts."""
+    (tmp_path / "t.urdf").write_text(TELESCOPE, encoding="utf-8")
+    robot = """model = "t.urdf"
+task = ["x", "y", "rz"]
+start = [0, 100, 0]
+limits = { acceleration = [200, 1000, 200] }
+[[obstacle]]
+name = "stone"
+shape = "sphere"
+radius = 30
+xyz = [900, -400, 0]"""
+    body = """
+      OBSTACLE stone;
+      MOVE LIN ((700, 300, 0), ORIZYX(20, 0, 0));
+      MOVE PTP ((850, 0, 0), ORIZYX(0, 0, 0));"""
+    run = ran(tmp_path, body, robot)
+    assert run.joint_names == ("turn", "first", "wrist")
+    turn, first, _ = run.q.T
+    length = 0.3 + (2.0 * first + 0.05) + 0.1 + first + 0.1
+    along = np.stack([length * np.cos(turn), length * np.sin(turn)], axis=1)
+    np.testing.assert_allclose(run.tool[:, :2], along, atol=1e-14)
+    assert first[-1] == pytest.approx(0.1)
+    assert run.summary.limit_use[0].kind == "position"
+    assert load_cell(tmp_path / "p.toml").limits.position_upper[1] == pytest.approx(0.175)
+    assert load_cell(tmp_path / "p.toml").limits.speed_upper[1] == pytest.approx(0.5)
+
+
 @pytest.mark.parametrize(
     ("cell", "code", "words"),
     [
