@@ -255,6 +255,23 @@ def test_position_only(tmp_path) -> None:
     assert np.linalg.norm(run.q[-1] - run.q[still]) > 0.1
 
 
+def test_five_axes_asked_for_positions(tmp_path) -> None:
+    """With pitch and roll free nobody can ask for the lean, which follows from the position."""
+    robot = IRB6 + 'task = ["x", "y", "z"]\nfree = ["rx", "ry"]\n'
+    assert load_cell(written(tmp_path, "  HALT;", robot).with_suffix(".toml")).robot.free == (
+        "rx",
+        "ry",
+        "rz",
+    )
+    body = """
+      MOVE LIN ((600, 300, 900), ORIZYX(0, 30, 40));
+      CYCLICSTART;
+      MOVE LIN (700, 0, 900), (600, 300, 900);"""
+    run = ran(tmp_path, body, robot)
+    np.testing.assert_allclose(run.tool[-1, :3], [0.6, 0.3, 0.9], atol=1e-12)
+    assert run.summary.returns[-1].largest < CLOSURE
+
+
 def test_a_turn_on_the_spot_that_nobody_asks_for_moves_nothing(tmp_path) -> None:
     run = ran(tmp_path, "  MOVE_INC LIN ((0, 0, 0), ORIZYX(0, 0, 40));\n  MOVE_INC LIN (0, 50, 0);", ANYHOW)
     first = next(r.tick for r in run.stream.records if r.block.id == 2)

@@ -77,7 +77,11 @@ def with_task(robot: RobotDescription, section: RobotSection, file: str) -> Robo
         # Imported here: most robots are asked for whole poses, and looking at a cell stays light.
         from irlx.robot.kinematics import Kinematics
 
-        _check_coordinates(Kinematics(robot), file)
+        kinematics = Kinematics(robot)
+        _check_coordinates(kinematics, file)
+        # Of an orientation of which two turns are as they come nobody can ask for the third.
+        if len(free) == 2 and kinematics.following.size:
+            robot = replace(robot, free=COORDINATES[3:])
     return robot
 
 
