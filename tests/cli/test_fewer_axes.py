@@ -378,6 +378,7 @@ xyz = [900, -400, 0]"""
         (IRB6 + 'task = ["x", "y", "z"]', "IRL615", "out rx, ry,"),
         ('model = "planar3"\ntask = ["x", "y", "z"]', "IRL623", "only 2 of them"),
         ('model = "arm7"\ntask = ["x", "y"]\nfree = ["rx", "ry", "rz"]', "IRL615", "out z"),
+        (IRB6 + 'free = ["rx"]', "IRL615", "out rz,"),
         (IRB6 + 'free = ["x"]', "IRL603", "free"),
         (IRB6 + "origins = { joint_22 = { xyz = [0, 0, 1] } }", "IRL606", "did you mean 'joint_2'"),
         (IRB6 + "origins = { joint_2 = { xzy = [0, 0, 1] } }", "IRL602", "did you mean 'xyz'"),

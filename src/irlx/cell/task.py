@@ -92,5 +92,8 @@ def _check_coordinates(kinematics: Kinematics, file: str) -> None:
         raise CellError(report("IRL623", place, task=", ".join(task.coordinates), rank=rank, rows=task.size))
     moved = [*(name for name in kinematics.following.coordinates if name in COORDINATES[:3])]
     moved += [name for name in kinematics.unbound.coordinates if name not in moved]
+    if len(kinematics.description.free) == 1 and kinematics.following.size:
+        # Beside one turn that is as it comes no other one can be told to follow.
+        moved += [name for name in kinematics.following.coordinates if name not in moved]
     if moved:
         raise CellError(report("IRL615", place, names=", ".join(moved)))
