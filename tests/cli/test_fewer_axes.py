@@ -170,6 +170,15 @@ def test_nothing_of_a_refused_move_is_carried_out(tmp_path) -> None:
     np.testing.assert_allclose(pose(caught.value.run.q[-1])[1], [0.7, 0.0, 0.9], atol=1e-12)
 
 
+def test_nor_of_a_path_that_stops_at_its_points(tmp_path) -> None:
+    """Its second point is none for this arm: the way to its first one is not begun."""
+    program = written(tmp_path, f"  MOVE LIN (700, 0, 900);\n  MOVE LIN PATH ((690, 50, 900), {OFF});")
+    with pytest.raises(irlx.RunError) as caught:
+        irlx.run(program)
+    assert caught.value.reason.code == "IRL437"
+    np.testing.assert_allclose(pose(caught.value.run.q[-1])[1], [0.7, 0.0, 0.9], atol=1e-12)
+
+
 @pytest.mark.parametrize(("lean", "allowed"), [(0.9, True), (1.1, False)])
 def test_targets_typed_by_hand_are_met_to_1e_4_rad(tmp_path, lean: float, allowed: bool) -> None:
     """A lean of the tool about the third axis of the wrist, level, by this much of the tolerance."""

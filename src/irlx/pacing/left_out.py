@@ -19,10 +19,12 @@ from irlx.blocks import MoveBlock, PoseTarget
 from irlx.diagnostics import Place, report
 from irlx.pacing.demand import Demand
 from irlx.pacing.errors import PacingError
+from irlx.pacing.situation import Situation
 from irlx.promises import FOLLOWED_TURN, PATH_ORIENTATION, PATH_POSITION
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
 from irlx.transform.nearest import nearest_in_bounds
+from irlx.transform.posture_search import nearest_posture, posture_near
 
 Array = NDArray[np.float64]
 
@@ -95,6 +97,25 @@ def check_on_path(
                 continue
             posture = near.q
         check_followed(posture, pose, kinematics)
+
+
+def check_points(asked: Sequence[AskedPose], situation: Situation, limits: JointLimits) -> None:
+    """Raise PacingError, IRL437, for a point of a PATH that no posture meets in all.
+
+    Looked at before the first of its pieces: a PATH that stops at its points is carried out piece by piece.
+    Postures are sought one after another, from the present one on.
+    """
+    kinematics, weights, free = situation.kinematics, situation.setup.weights, situation.free
+    posture = situation.q
+    for pose in asked if kinematics.following.size else ():
+        sought = kinematics, situation.qp, pose.rotation, pose.position, posture, weights, limits, free
+        near = posture_near(*sought)
+        if near is None:
+            search = nearest_posture(*sought)
+            if search.q is None and search.misses is not None:
+                check_followed(search.misses, pose, kinematics)
+            near = search.q
+        posture = posture if near is None else near
 
 
 def turns_off(q: Array, pose: AskedPose, kinematics: Kinematics) -> Array:

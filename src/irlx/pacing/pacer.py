@@ -89,6 +89,7 @@ class Pacer:
         self._clearance = kept_clear(setup.kinematics, setup.scene, self.options)
         self._rest: MoveBlock | None = None
         self._asked: Array | None = None
+        self._looked_at = set[int]()
 
     def _new_solver(self) -> TickSolver:
         """What solves the ticks: roughly in a dry run."""
@@ -147,6 +148,7 @@ class Pacer:
             self.notes,
             self._clear_from_now,
             self._asked,
+            self._looked_at,
         )
 
     @property

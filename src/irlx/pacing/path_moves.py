@@ -19,7 +19,7 @@ from irlx.pacing.demand import Demand
 from irlx.pacing.drawn_to import check_postures, postures_asked, term_of, warn_of_posture_left
 from irlx.pacing.errors import PacingError
 from irlx.pacing.impossible import Surroundings, explain_failure, goal_shortfall, slower_than_allowed
-from irlx.pacing.left_out import AskedPose, asked_poses, check_on_path
+from irlx.pacing.left_out import AskedPose, asked_poses, check_on_path, check_points
 from irlx.pacing.motion import Motion
 from irlx.pacing.nearest_rows import NearestRows, nearest_of
 from irlx.pacing.options import LimitsInForce
@@ -29,6 +29,7 @@ from irlx.pacing.posture_term import PostureTerm
 from irlx.pacing.rows import MotionRows, PathPart, handed_out, held
 from irlx.pacing.situation import Situation
 from irlx.promises import PATH_ORIENTATION, PATH_POSITION
+from irlx.robot.limits import JointLimits
 
 Array = NDArray[np.float64]
 
@@ -43,7 +44,7 @@ def move_along_path(situation: Situation, moves: Sequence[MoveBlock], in_force: 
     its place.
     """
     check_postures(situation, moves[0], in_force)
-    legs = _legs(situation, moves)
+    legs = _legs(situation, moves, in_force.limits)
     plan = plan_chain(legs, *situation.pose, situation.dt)
     if len(plan.ends) > 1:
         try:
@@ -55,7 +56,7 @@ def move_along_path(situation: Situation, moves: Sequence[MoveBlock], in_force: 
     return _motion(situation, moves, legs, plan, in_force)
 
 
-def _legs(situation: Situation, moves: Sequence[MoveBlock]) -> list[Leg]:
+def _legs(situation: Situation, moves: Sequence[MoveBlock], limits: JointLimits) -> list[Leg]:
     """Moves as motions of the tool, each from where the one before was to end."""
     start, legs = situation.pose, []
     for move in moves:
@@ -63,6 +64,9 @@ def _legs(situation: Situation, moves: Sequence[MoveBlock]) -> list[Leg]:
         check_targets(told, situation.kinematics, situation.q, situation.locate(move.origin))
         legs.append(Leg(told, situation.locate(move.origin)))
         start = end_of_move(told, start, legs[-1].place)
+        if told.path is not None and told.id not in situation.looked_at:
+            situation.looked_at.add(told.id)
+            check_points(asked_poses(told, start, legs[-1].place), situation, limits)
     return legs
 
 

@@ -58,6 +58,7 @@ class Situation:
     `warnings` and `notes` collect what is found on the way, also before an error; `clearance` is what is kept
     clear. `asked` (3, 3) is the orientation that was asked for last, None where that is the tool's own: a
     robot whose task leaves turns to the joints goes on from it, or what it makes of them would add up.
+    `looked_at` are ids of moves along a PATH whose points have been looked at.
     """
 
     setup: PacingSetup
@@ -71,6 +72,7 @@ class Situation:
     notes: Notes
     clearance: Clearance | None = None
     asked: Array | None = None
+    looked_at: set[int] = field(default_factory=set)
 
     @property
     def kinematics(self) -> Kinematics:
