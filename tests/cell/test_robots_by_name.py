@@ -46,9 +46,19 @@ def smallest_singular_value(found):
 
 @pytest.mark.req("CELL-04")
 def test_names():
-    assert packaged_names() == (
-        *("arm7", "gantry9", "koch11", "mobile8", "mobile9", "planar3", "planar4", "rail6", "snake20"),
+    names = (
+        "arm7",
+        "gantry9",
+        "irb6",
+        "koch11",
+        "mobile8",
+        "mobile9",
+        "planar3",
+        "planar4",
+        "rail6",
+        "snake20",
     )
+    assert packaged_names() == names
     assert external_names() == tuple(sorted(AXES))
     assert robot_names() == packaged_names() + external_names()
 

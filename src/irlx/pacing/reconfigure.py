@@ -7,7 +7,6 @@ from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from irlx.blocks import ReconfigureBlock
 from irlx.diagnostics import Place, report
@@ -152,14 +151,16 @@ def _motion_rows(
     touched = touching(q, rows, model.limits, dt * ticks / len(rows))
     start_rotation, start_position = kinematics.tool_pose(q)
     rotation, position = kinematics.tool_poses(held)
+    wanted = np.tile(start_rotation, (len(held), 1, 1)), np.tile(start_position, (len(held), 1))
+    distance, angle = kinematics.errors(held, wanted)
     return MotionRows(
         block,
         first_tick,
         held,
         position,
         rotation,
-        np.linalg.norm(position - start_position, axis=1),
-        Rotation.from_matrix(start_rotation.T @ rotation).magnitude(),
+        distance,
+        angle,
         np.vstack([touched, np.zeros_like(touched[:1])]),
         np.append(way, way[-1]),
         float(way[-1]),

@@ -61,6 +61,9 @@ class Situation:
     `warnings` and `notes` collect what is found on the way, also before an error; `clearance` is what is kept
     clear. `programmed`: where the path of a move WITH TOLERANCE ended, rotation (3, 3) and position (3,) m,
     while the tool stands off it; `freed`: the robot where virtual joints stand among its own.
+    `asked` (3, 3) is the orientation that was asked for last, None where that is the tool's own: a
+    robot whose task leaves turns to the joints goes on from it, or what it makes of them would add up.
+    `looked_at` are ids of moves along a PATH whose points have been looked at.
     """
 
     setup: PacingSetup
@@ -74,6 +77,8 @@ class Situation:
     notes: Notes
     clearance: Clearance | None = None
     programmed: tuple[Array, Array] | None = None
+    asked: Array | None = None
+    looked_at: set[int] = field(default_factory=set)
     freed: Freed | None = None
 
     @property
@@ -98,8 +103,9 @@ class Situation:
 
     @property
     def pose(self) -> tuple[Array, Array]:
-        """Rotation (3, 3) and position (3,) m of the tool in the world."""
-        return self.kinematics.tool_pose(self.q)
+        """Rotation (3, 3), or that asked for, and position (3,) m of the tool in the world."""
+        rotation, position = self.kinematics.tool_pose(self.q)
+        return (rotation if self.asked is None else self.asked), position
 
     def in_force(self, clauses: Iterable[LimitClause] = ()) -> LimitsInForce:
         """Joint limits of a motion with its own clauses."""

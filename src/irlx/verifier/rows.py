@@ -14,6 +14,7 @@ from irlx.streams.error import StreamError
 from irlx.streams.joint_stream import Floats, Integers
 from irlx.streams.scan import RowBatch, ScanItem, StatedRates
 from irlx.verifier.geometry.forward import forward
+from irlx.verifier.geometry.task_turns import TaskTurns
 from irlx.verifier.outline import Outline, Scans
 from irlx.verifier.tools import Pose, ToolsInForce, tools_of
 
@@ -54,7 +55,8 @@ class Rows:
     and s2, the robot resting before row 0. Arrays `postures` (R + 1, n), `positions` (R + 1, 3) m and
     `rotations` (R + 1, 3, 3) begin with the row before; for row 0 that is row 0 itself. Poses are those of
     the verifier's own forward kinematics, and empty where no robot is known: those of the tip in `tips`, of
-    the tool in force in each row in `positions` and `rotations`.
+    the tool in force in each row in `positions` and `rotations`. `turns` tells which turns of it count, None
+    for all.
     """
 
     first: int
@@ -68,6 +70,7 @@ class Rows:
     outline: Outline
     tips: Pose
     tools: ToolsInForce
+    turns: TaskTurns | None = None
 
     def __len__(self) -> int:
         return len(self.qd)
@@ -102,6 +105,13 @@ class Rows:
         return positions, rotations
 
     @cached_property
+    def attitudes(self) -> Floats:
+        """Attitudes (R + 1, ..) of the tool in force; see `irlx.verifier.geometry.task_turns`."""
+        if self.turns is None:
+            return self.rotations
+        return self.turns.attitudes(self.rotations, self.turns.frames(self.postures))
+
+    @cached_property
     def stretches(self) -> list[Stretch]:
         """The portion's rows by the blocks they belong to, in order."""
         outline, last = self.outline, self.first + len(self) - 1
@@ -124,6 +134,7 @@ def rows_of(scans: Scans, outline: Outline, robot: RobotDescription | None) -> I
     earlier: tuple[Floats, Floats] | None = None
     poses: tuple[Floats, Floats] | None = None
     tools = tools_of(outline.records)
+    turns = None if robot is None else TaskTurns.of(robot)
     held = 0
     for portion in _portions(scans()):
         # A file that grows meanwhile is judged as it was.
@@ -144,7 +155,7 @@ def rows_of(scans: Scans, outline: Outline, robot: RobotDescription | None) -> I
             poses = tips[0][-1:], tips[1][-1:]
         placed = tools.placed(tips, np.concatenate([[held], numbers])) if robot is not None else tips
         held = int(numbers[-1])
-        yield Rows(done, postures, qd, qdd, batch.tool, batch.rates, *placed, outline, tips, tools)
+        yield Rows(done, postures, qd, qdd, batch.tool, batch.rates, *placed, outline, tips, tools, turns)
         earlier = q[-1:], qd[-1:]
         done += len(q)
 

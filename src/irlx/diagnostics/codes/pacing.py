@@ -90,7 +90,7 @@ PACING = (
     ),
     error(
         "IRL430",
-        "the target is off where no joint of {robot} moves the tool: {off}, in the tool frame",
+        "the target is off where no joint of {robot} moves the tool: {off}, in {frame}",
         "give the target the values that the tool has there; the robot's task leaves them out",
     ),
     info(
@@ -118,6 +118,11 @@ PACING = (
         "the move passes its target by {miss} mm: its way is left {left} mm before the corner, and the next "
         "one's is reached {joined} mm behind it",
         "ask for a smaller C_CP or C_PTP to come nearer, for a larger one to be quicker",
+    ),
+    error(
+        "IRL437",
+        "{robot} has no joint for all of this target: at its end the tool is off it by {off}, in {frame}",
+        "the nearest pose that {robot} can meet is {pose} (mm and deg in the root frame of the robot)",
     ),
     warning(
         "IRL445",
