@@ -41,7 +41,7 @@ def smallest_singular_value(found):
 
 @pytest.mark.req("CELL-04")
 def test_names():
-    assert packaged_names() == ("arm7", "koch11", "mobile8", "planar3", "planar4", "rail6")
+    assert packaged_names() == ("arm7", "dual14", "koch11", "mobile8", "planar3", "planar4", "rail6")
     assert external_names() == tuple(sorted(AXES))
     assert robot_names() == packaged_names() + external_names()
 

@@ -69,9 +69,11 @@ class Inertial:
 class RobotDescription:
     """A robot as a tree of links and joints, with the tool frame `tip` that moves address.
 
-    `joints` holds all joints of the tree; those between `root` and `tip` that move and are not
-    `locked` are the robot's axes, in order from the root. `locked` maps a joint name to the value
-    it is held at; moving joints off the chain are held at their locked value or zero. `solids` are the
+    `joints` holds all joints of the tree; those that move and are not `locked` are the robot's axes where
+    they lie between `root` and `tip`, or between `root` and one of the `carriers`: links that carry
+    something of their own, as another hand does. Axes come depth first, branches in the order of `joints`;
+    along a plain chain that is the order from the root. `locked` maps a joint name to the value
+    it is held at; moving joints that are no axes are held at their locked value or zero. `solids` are the
     shapes of each link that others must not touch, in the link's frame.
     """
 
@@ -83,22 +85,42 @@ class RobotDescription:
     locked: Mapping[str, float] = field(default_factory=dict)
     coordinates: tuple[str, ...] = COORDINATES
     solids: Mapping[str, tuple[Solid, ...]] = field(default_factory=dict)
+    carriers: tuple[str, ...] = ()
 
     @cached_property
     def chain(self) -> tuple[Joint, ...]:
         """All joints from the root to the tip, fixed and locked ones included."""
+        return self.chain_to(self.tip)
+
+    def chain_to(self, link: str) -> tuple[Joint, ...]:
+        """All joints from the root to a link, fixed and locked ones included. KeyError for no link."""
         by_child = {joint.child: joint for joint in self.joints}
         found: list[Joint] = []
-        link = self.tip
         while link != self.root:
             found.append(by_child[link])
             link = by_child[link].parent
         return tuple(reversed(found))
 
     @cached_property
+    def moved(self) -> tuple[Joint, ...]:
+        """The joints of all chains, to the tip and to the carriers: depth first, as axes come."""
+        wanted = {joint.name for link in (self.tip, *self.carriers) for joint in self.chain_to(link)}
+        children: dict[str, list[Joint]] = {}
+        for joint in self.joints:
+            if joint.name in wanted:
+                children.setdefault(joint.parent, []).append(joint)
+        found: list[Joint] = []
+        waiting = list(reversed(children.get(self.root, [])))
+        while waiting:
+            joint = waiting.pop()
+            found.append(joint)
+            waiting += reversed(children.get(joint.child, []))
+        return tuple(found)
+
+    @cached_property
     def axes(self) -> tuple[Joint, ...]:
         """The joints that programs move, in the order of MAIN_JOINT's fields."""
-        return tuple(j for j in self.chain if j.kind is not JointKind.FIXED and j.name not in self.locked)
+        return tuple(j for j in self.moved if j.kind is not JointKind.FIXED and j.name not in self.locked)
 
     @property
     def joint_names(self) -> tuple[str, ...]:
@@ -108,22 +130,28 @@ class RobotDescription:
     @cached_property
     def reach(self) -> float:
         """Upper bound of the distance between the first axis and the tool, m, all slides at the far end."""
-        start = self.chain.index(self.axes[0]) + 1 if self.axes else 0
-        total = sum(sum(c * c for c in joint.xyz) ** 0.5 for joint in self.chain[start:])
-        for joint in self.axes:
+        return self.reach_to(self.tip) or 1.0
+
+    def reach_to(self, link: str) -> float:
+        """Upper bound of the distance between the first axis that moves a link and the link, m; 0 without."""
+        chain = self.chain_to(link)
+        axes = [joint for joint in chain if joint in self.axes]
+        start = chain.index(axes[0]) + 1 if axes else len(chain)
+        total: float = sum(sum(c * c for c in joint.xyz) ** 0.5 for joint in chain[start:])
+        for joint in axes:
             if joint.is_prismatic:
                 stroke = max(abs(joint.lower), abs(joint.upper))
                 total += stroke if stroke != inf else 0.0
-        return total if total > 0.0 else 1.0
+        return total
 
     @cached_property
     def fingerprint(self) -> str:
-        """SHA-256 (hex) of the chain's geometry and task: two robots that move alike have the same one."""
+        """SHA-256 (hex) of the chains' geometry and task: two robots that move alike have the same one."""
         chain = [
             {**asdict(joint), "lower": None, "upper": None, "speed": None, "kind": joint.kind.value}
-            for joint in self.chain
+            for joint in self.moved
         ]
-        locked = {joint.name: self.locked[joint.name] for joint in self.chain if joint.name in self.locked}
+        locked = {joint.name: self.locked[joint.name] for joint in self.moved if joint.name in self.locked}
         told: dict[str, object] = {"tip": self.tip, "chain": chain, "locked": locked}
         if self.coordinates != COORDINATES:
             told["task"] = self.coordinates

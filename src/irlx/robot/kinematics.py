@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from irlx.robot.description import COORDINATES, Inertial, Joint, JointKind, RobotDescription
 from irlx.robot.equality import Constraint
+from irlx.robot.link_frame import LinkFrame
 from irlx.robot.task import Task, partial_difference
 
 Array = NDArray[np.float64]
@@ -100,6 +101,7 @@ class Kinematics:
         for joint in description.joints:
             self._children.setdefault(joint.parent, []).append(joint)
         self._tip_frame = -1
+        self._relative: dict[LinkFrame, Kinematics] = {}
         self._bodies: dict[str, tuple[int, pin.SE3]] = {}
         self._add_link(description.root, 0, pin.SE3.Identity())
         self.data = self.model.createData()
@@ -125,6 +127,24 @@ class Kinematics:
         x, y, z, w = orientation
         turn = pin.Quaternion(w, x, y, z).normalized().toRotationMatrix()
         return Kinematics(self.description, self.constraints, pin.SE3(turn, np.array(position)))
+
+    @property
+    def world(self) -> Kinematics:
+        """The same robot, the poses of its tool told in the world."""
+        return self
+
+    def relative_to(self, frame: LinkFrame) -> Kinematics:
+        """The same robot, the poses of its tool told in a frame that moves with one of its links.
+
+        Raises KeyError where it has no such link.
+        """
+        found = self._relative.get(frame)
+        if found is None:
+            # Imported here: it is a Kinematics itself.
+            from irlx.robot.relative_kinematics import RelativeKinematics
+
+            found = self._relative[frame] = RelativeKinematics(self, frame)
+        return found
 
     def _add_link(self, link: str, parent: int, in_parent: pin.SE3) -> None:
         """Add a link, welded to Pinocchio joint `parent` at `in_parent`, and all that hangs on it."""
@@ -179,11 +199,14 @@ class Kinematics:
 
     def tool_difference(self, q: Array, target: pin.SE3) -> tuple[Array, Array]:
         """log6(T(q)^-1 T_target), shape (6,), and the tool Jacobian, shape (6, n), whatever the task."""
+        pose, jacobian = self._pose_and_jacobian(q)
+        return pin.log6(pose.actInv(target)).vector, jacobian
+
+    def _pose_and_jacobian(self, q: Array) -> tuple[pin.SE3, Array]:
+        """Pose of the tool, in a buffer, and its Jacobian (6, n) in the tool frame."""
         pin.computeJointJacobians(self.model, self.data, q)
         pose = pin.updateFramePlacement(self.model, self.data, self._tip_frame)
-        twist = pin.log6(pose.actInv(target)).vector
-        jacobian = pin.getFrameJacobian(self.model, self.data, self._tip_frame, _LOCAL)
-        return twist, jacobian
+        return pose, pin.getFrameJacobian(self.model, self.data, self._tip_frame, _LOCAL)
 
     def difference_derivative(self, q: Array, target: pin.SE3) -> tuple[Array, Array]:
         """What `difference` gives first and its exact derivative by q, (m, n), also far from the target.
@@ -194,13 +217,14 @@ class Kinematics:
         return left, -matrix
 
     def _rows(self, q: Array, target: pin.SE3, exact: bool) -> tuple[Array, Array]:
-        left, matrix = self.tool_difference(q, target)
-        pose = self.data.oMf[self._tip_frame]
+        pose, matrix = self._pose_and_jacobian(q)
         if not self.task.is_whole:
             left, matrix = partial_difference(self.task, pose, matrix, target)
-        elif exact:
+        else:
             apart = pose.actInv(target)
-            matrix = pin.Jlog6(apart) @ apart.inverse().action @ matrix
+            left = pin.log6(apart).vector
+            if exact:
+                matrix = pin.Jlog6(apart) @ apart.inverse().action @ matrix
         if not self.constraints:
             return left, matrix
         residuals = [-item.residual(q) for item in self.constraints]
@@ -239,8 +263,7 @@ class Kinematics:
         """The matrix (m, n) of `here`."""
         if not self._plain:
             return self.here(q)[1]
-        pin.computeJointJacobians(self.model, self.data, q)
-        return np.asarray(pin.getFrameJacobian(self.model, self.data, self._tip_frame, _LOCAL))
+        return np.asarray(self._pose_and_jacobian(q)[1])
 
     def here(self, q: Array) -> tuple[Array, Array]:
         """`difference` to the tool's own pose at q: constraints alone may be left."""
