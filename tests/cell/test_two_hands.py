@@ -23,8 +23,6 @@ PIPE = """[frames]
 table = { xyz = [600, 0, 0] }
 pipe = { link = '%s', xyz = [0, 80, 0], rpy = [-90, 0, 0] }
 """
-    "[frames]\ntable = { xyz = [600, 0, 0] }\npipe = { link = '%s', xyz = [0, 80, 0], rpy = [-90, 0, 0] }\n"
-)
 
 
 def fault(cell, text):
