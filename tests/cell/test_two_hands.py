@@ -8,12 +8,12 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from irlx.blocks.link_frame import LinkFrame
 from irlx.cell.errors import CellError
 from irlx.cell.joint_names import joint_names
 from irlx.cell.packaged import packaged_urdf
 from irlx.cell.robot_data import robot_data_folder
 from irlx.robot.kinematics import Kinematics
-from irlx.robot.link_frame import LinkFrame
 
 pytestmark = pytest.mark.req("CELL-04", "TRF-23")
 

@@ -9,10 +9,10 @@ import pinocchio as pin
 import pytest
 from scipy.spatial.transform import Rotation
 
+from irlx.blocks.link_frame import LinkFrame
 from irlx.cell.packaged import packaged_urdf
 from irlx.robot.equality import LinearConstraint
 from irlx.robot.kinematics import Kinematics
-from irlx.robot.link_frame import LinkFrame
 from irlx.robot.relation import JointRelation
 from irlx.robot.urdf import read_urdf
 from irlx.robot.urdf_values import RobotModelError

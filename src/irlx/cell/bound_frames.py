@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from irlx.blocks.link_frame import LinkFrame
 from irlx.cell.schema import CellFile, FrameSection
 from irlx.diagnostics import Diagnostic, Place, report
 from irlx.robot.description import RobotDescription
-from irlx.robot.link_frame import LinkFrame
 
 
 def bound_links(content: CellFile) -> dict[str, str]:

@@ -8,6 +8,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from irlx.blocks.link_frame import LinkFrame
 from irlx.cell.bound_frames import bound_frame_errors, link_frame
 from irlx.cell.cell import Cell, MotionDefaults, NamedFrame
 from irlx.cell.constraints import read_constraints
@@ -19,7 +20,6 @@ from irlx.diagnostics import Diagnostic, Place, report
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.robot.description import RobotDescription
 from irlx.robot.limits import JointLimits
-from irlx.robot.link_frame import LinkFrame
 
 Array = NDArray[np.float64]
 _KINDS = ("position", "speed", "acceleration")

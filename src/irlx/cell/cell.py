@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from irlx.blocks.link_frame import LinkFrame
 from irlx.diagnostics import Diagnostic, Place
 from irlx.robot.description import RobotDescription
 from irlx.robot.limits import JointLimits
-from irlx.robot.link_frame import LinkFrame
 from irlx.robot.relation import JointRelation
 from irlx.scene.scene import Scene
 

@@ -11,9 +11,9 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from irlx.blocks.link_frame import LinkFrame
 from irlx.robot.description import COORDINATES, Inertial, Joint, JointKind, RobotDescription
 from irlx.robot.equality import Constraint
-from irlx.robot.link_frame import LinkFrame
 from irlx.robot.task import Task, partial_difference
 
 Array = NDArray[np.float64]

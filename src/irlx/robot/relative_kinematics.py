@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 import pinocchio as pin
 
+from irlx.blocks.link_frame import LinkFrame
 from irlx.robot.equality import Constraint
 from irlx.robot.kinematics import Array, Kinematics
-from irlx.robot.link_frame import LinkFrame
 
 _LOCAL = pin.ReferenceFrame.LOCAL
 
