@@ -24,6 +24,7 @@ from irlx.pacing.correction.tool_rates import ToolRates
 from irlx.pacing.executed import Executed
 from irlx.pacing.explanation import TickExplanation
 from irlx.pacing.explanation import explain_tick as explain_row
+from irlx.pacing.frames import frame_of, seen_from
 from irlx.pacing.lookahead import Lookahead
 from irlx.pacing.notes import Notes
 from irlx.pacing.pacer import Pacer
@@ -223,7 +224,9 @@ class Execution:
         cell = self.job.cell
         limits, setup = rows.limits or cell.limits, self._pacer.setup
         dt = self.job.tick_ns / 1e9
-        return explain_row(rows, before, tick, limits, setup.weights, setup.kinematics, dt)
+        place = self._pacer.locate(rows.block.origin)
+        kinematics = seen_from(setup.kinematics, frame_of(rows.block), place)
+        return explain_row(rows, before, tick, limits, setup.weights, kinematics, dt)
 
     def start(self) -> tuple[StreamHeader, Array, Array, Array]:
         """Header of the stream; start posture (n,), and the tool's rotation (3, 3), position (3,) m in it."""

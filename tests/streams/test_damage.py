@@ -112,8 +112,8 @@ def change(data: bytes, old: bytes, new: bytes) -> bytes:
     ("old", "new", "code", "words"),
     [
         (b"1, 100, ", b"2, 100, ", "IRL701", "record 1: .*its number is 2"),
-        (b"version=2", b"version=3", "IRL706", "version 3"),
-        (b"version=2", b"version=1", "IRL701", "record 5: .*code 200 is due"),
+        (b"version=3", b"version=4", "IRL706", "version 4"),
+        (b"version=3", b"version=1", "IRL701", "record 5: .*code 200 is due"),
         (b"7, 201, joints=7", b"7, 201, joints=8", "IRL701", "record 15: "),
         (b'unit="m"', b'unit="in"', "IRL701", "record 14: .*'in'|rad"),
         (b"weight=7.0, ", b"", "IRL701", "record 8: .*weight"),

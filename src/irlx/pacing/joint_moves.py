@@ -71,7 +71,7 @@ def _further(
 def _leg(situation: Situation, block: MoveBlock, in_force: LimitsInForce) -> JointLeg:
     """A PTP as a motion to a posture. Raises PacingError where the joints may not go there."""
     place = situation.locate(block.origin)
-    end = _end_posture(situation, block, in_force, place)
+    end = _end_posture(situation.in_frame(block.frame, place), block, in_force, place)
     # Degrees in a program come back as radians that may be off by the last bits: nothing moves for that.
     end = np.where(np.abs(end - situation.q) <= SAME_VALUE, situation.q, end)
     robot = situation.robot

@@ -242,7 +242,8 @@ class Pacer:
 
         For a dry run alone. Raises PacingError or MotionError where no posture is there; it stays then.
         """
-        situation, place = self._situation, self.locate(move.origin)
+        place = self.locate(move.origin)
+        situation = self._situation.in_frame(move.frame, place)
         end = posture_beyond(situation, move, situation.in_force(move.limits), place)
         self.tick += ticks_beyond(situation, move, place)
         self.q = end
@@ -342,7 +343,8 @@ class Pacer:
         return self._moved(rows, self._situation.in_force())
 
     def _reconfigure(self, block: ReconfigureBlock) -> MotionRows | None:
-        place, situation = self.locate(block.origin), self._situation
+        place = self.locate(block.origin)
+        situation = self._situation.in_frame(block.frame, place)
         in_force = situation.in_force()
         check_inside(self.q, self._robot, in_force.limits, place)
         konf = asked_posture(block.target, situation, in_force, place)

@@ -39,9 +39,10 @@ _TURN_RULES = 1e3
 def move_along_path(situation: Situation, moves: Sequence[MoveBlock], in_force: LimitsInForce) -> Motion:
     """Carry out the first stop-to-stop motion of moves along paths, those first that pass their targets.
 
-    Where the joined moves cannot be done, the first one is done alone. Raises PacingError or MotionError at
-    its place.
+    All go in the frame of the first one. Where the joined moves cannot be done, that one is done alone.
+    Raises PacingError or MotionError at its place.
     """
+    situation = situation.in_frame(moves[0].frame, situation.locate(moves[0].origin))
     check_postures(situation, moves[0], in_force)
     legs = _legs(situation, moves)
     plan = plan_chain(legs, *situation.pose, situation.dt)
@@ -174,17 +175,20 @@ def _nearest(situation: Situation, paced: PacedPath) -> NearestRows | None:
 
 
 def _tool(situation: Situation, paced: PacedPath) -> tuple[Array, Array, Array, Array]:
-    """Distance (m) and angle (rad) of rows from the demands, and their tool poses.
+    """Distance (m) and angle (rad) of rows from the demands, and their tool poses in the world.
 
     A dry run, whose rows nobody gets, takes the demands for them.
     """
-    if situation.setup.resolution.is_coarse:
-        rotation, position = _wanted(paced.demands)
-        nothing = np.zeros(len(paced.q))
-        return nothing, nothing, position, rotation
     kinematics = situation.kinematics
+    in_world = kinematics.world is kinematics
+    if situation.setup.resolution.is_coarse:
+        nothing = np.zeros(len(paced.q))
+        poses = _wanted(paced.demands) if in_world else kinematics.world.tool_poses(paced.q)
+        return nothing, nothing, poses[1], poses[0]
     rotation, position = kinematics.tool_poses(paced.q)
     distance, angle = pose_errors(kinematics.task, _wanted(paced.demands), (rotation, position))
+    if not in_world:
+        rotation, position = kinematics.world.tool_poses(paced.q)
     return distance, angle, position, rotation
 
 

@@ -152,14 +152,18 @@ def _motion_rows(
     touched = touching(q, rows, model.limits, dt * ticks / len(rows))
     start_rotation, start_position = kinematics.tool_pose(q)
     rotation, position = kinematics.tool_poses(held)
+    off = np.linalg.norm(position - start_position, axis=1)
+    turned = Rotation.from_matrix(start_rotation.T @ rotation).magnitude()
+    if kinematics.world is not kinematics:
+        rotation, position = kinematics.world.tool_poses(held)
     return MotionRows(
         block,
         first_tick,
         held,
         position,
         rotation,
-        np.linalg.norm(position - start_position, axis=1),
-        Rotation.from_matrix(start_rotation.T @ rotation).magnitude(),
+        off,
+        turned,
         np.vstack([touched, np.zeros_like(touched[:1])]),
         np.append(way, way[-1]),
         float(way[-1]),

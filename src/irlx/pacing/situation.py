@@ -9,10 +9,11 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.blocks import LimitClause, Origin
+from irlx.blocks import LimitClause, LinkFrame, Origin
 from irlx.diagnostics import Diagnostic, Place
 from irlx.pacing.correction.share import planned_limits
 from irlx.pacing.demand import DemandModifier
+from irlx.pacing.frames import seen_from
 from irlx.pacing.inputs import Inputs
 from irlx.pacing.notes import Notes
 from irlx.pacing.options import LimitsInForce, Options, limits_in_force
@@ -92,8 +93,19 @@ class Situation:
 
     @property
     def pose(self) -> tuple[Array, Array]:
-        """Rotation (3, 3) and position (3,) m of the tool in the world."""
+        """Rotation (3, 3) and position (3,) m of the tool in the world, or in the frame of the situation."""
         return self.kinematics.tool_pose(self.q)
+
+    def in_frame(self, frame: LinkFrame | None, place: Place) -> Situation:
+        """The same with poses told in a frame that moves with a link; itself for the world.
+
+        Raises PacingError: IRL515 where the robot has no such link.
+        """
+        if frame is None:
+            return self
+        kinematics = seen_from(self.kinematics.world, frame, place)
+        setup = replace(self.setup, kinematics=kinematics)
+        return replace(self, setup=setup, solver=type(self.solver)(kinematics, self.qp))
 
     def in_force(self, clauses: Iterable[LimitClause] = ()) -> LimitsInForce:
         """Joint limits of a motion with its own clauses."""

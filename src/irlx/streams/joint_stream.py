@@ -15,7 +15,7 @@ from irlx.streams.making import Making
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-FORMAT_VERSION = 2
+FORMAT_VERSION = 3
 """Version of the stream's content that this irlx writes; readers take it and all before it."""
 
 JOINT_UNITS = ("rad", "m")

@@ -119,6 +119,11 @@ PACING = (
         "one's is reached {joined} mm behind it",
         "ask for a smaller C_CP or C_PTP to come nearer, for a larger one to be quicker",
     ),
+    error(
+        "IRL440",
+        "a motion in the frame '{frame}', which moves with a link, cannot be corrected",
+        "corrections and obstacles that are seen count in the world: run the program without them",
+    ),
     warning(
         "IRL445",
         "limits make this move {lost} s longer than programmed, {share} %: at {way} of {length} the tool has "

@@ -33,6 +33,7 @@ from irlx.pacing.correction.tool_offset import corrected_pose, correction_betwee
 from irlx.pacing.correction.tool_rates import ToolRates
 from irlx.pacing.errors import PacingError
 from irlx.pacing.executed import Executed
+from irlx.pacing.frames import frame_of
 from irlx.pacing.impossible import joint_value
 from irlx.pacing.pacer import Pacer
 from irlx.promises import PATH_ORIENTATION, PATH_POSITION
@@ -123,12 +124,19 @@ class Corrector:
         parts: list[Executed] = []
         for executed in source:
             if executed.rows is not None:
+                self._check_frame(executed.block)
                 parts.append(executed)
             if not goes_on(executed.rows, bool(parts)) and parts:
                 break
         limits = next((part.rows.limits for part in parts if part.rows is not None), None)
         free = self._pacer.options.free_joints(self._now.q.size)
         return planned_motion(parts, limits or self._pacer.setup.limits, free)
+
+    def _check_frame(self, block: Block) -> None:
+        """What is corrected is where the tool is in the world: IRL440 for a block that leads it elsewhere."""
+        frame = frame_of(block)
+        if frame is not None:
+            raise PacingError(report("IRL440", self._pacer.locate(block.origin), frame=frame.name))
 
     def _surroundings(self, motion: PlannedMotion) -> Surroundings:
         setup = self._pacer.setup

@@ -1,0 +1,34 @@
+"""Moves in frames that move with a link: how the robot is seen from such a frame."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from irlx.blocks import Block, LinkFrame, MoveBlock, MoveKind, ReconfigureBlock
+from irlx.diagnostics import Place, report
+from irlx.diagnostics.diagnostic import near_matches
+from irlx.pacing.errors import PacingError
+from irlx.robot.kinematics import Kinematics
+
+
+def frame_of(block: Block) -> LinkFrame | None:
+    """The frame in which a block leads the tool or keeps it, None for the world."""
+    leads = isinstance(block, ReconfigureBlock) or (
+        isinstance(block, MoveBlock) and block.kind is not MoveKind.PTP
+    )
+    return block.frame if leads and isinstance(block, MoveBlock | ReconfigureBlock) else None
+
+
+def seen_from(kinematics: Kinematics, frame: LinkFrame | None, place: Place) -> Kinematics:
+    """The robot with the poses of its tool told in a frame, None for the world.
+
+    Raises PacingError: IRL515 where it has no such link, as in a stream of another robot.
+    """
+    if frame is None:
+        return kinematics
+    robot = kinematics.description
+    links = (robot.root, *(joint.child for joint in robot.joints))
+    if frame.link not in links:
+        data: dict[str, Any] = {"name": frame.name, "link": frame.link, "robot": robot.name}
+        raise PacingError(report("IRL515", place, near=near_matches(frame.link, links), **data))
+    return kinematics.relative_to(frame)
