@@ -11,29 +11,24 @@ from functools import cache
 from importlib.metadata import version
 from math import inf
 from pathlib import Path
-from typing import IO, Any
-
-import numpy as np
+from typing import IO
 
 from irlx._version import __version__
 from irlx.cell.cell import Cell
-from irlx.cell.errors import CellError
 from irlx.cell.find import is_file
 from irlx.cell.input_file import read_input_file
 from irlx.cell.load import load_cell
+from irlx.cell.made_constraints import constrained
 from irlx.diagnostics import IrlxError, report
-from irlx.diagnostics.diagnostic import near_matches
 from irlx.interpreter.channels.pieces import InputGiven
 from irlx.interpreter.channels.setup import ChannelSetup
 from irlx.interpreter.interpret import MAX_STEPS
 from irlx.pacing.inputs import InputFunction, Inputs
 from irlx.pacing.pauses import PauseFunction, Pauses, is_time
 from irlx.program import Program, ProgramError, cell_path, load
-from irlx.promises import CONDITION, LONGEST_TICK, SHORTEST_TICK
+from irlx.promises import LONGEST_TICK, SHORTEST_TICK
 from irlx.recorded import Recorded, cell_of, check_joints, is_recorded, recorded
-from irlx.robot.equality import Constraint, LinearConstraint
 from irlx.robot.kinematics import Kinematics
-from irlx.robot.registered_constraints import registered_constraints
 from irlx.streams.joint_stream import FORMAT_VERSION, StreamHeader
 from irlx.streams.making import Making
 
@@ -222,31 +217,9 @@ def _loaded(path: PathLike, cell: PathLike | None) -> Program:
 def kinematics_of(cell: Cell) -> Kinematics:
     """Kinematics of a cell's robot with its constraints.
 
-    Raises CellError: IRL617 for a constraint that nobody registered, IRL616 for one that the start breaks.
+    Raises CellError as `constrained` does.
     """
-    plain = Kinematics(cell.robot)
-    if not (cell.relations or cell.registered):
-        return plain
-    names = cell.robot.joint_names
-    found: list[Constraint] = [LinearConstraint(relation, names) for relation in cell.relations]
-    makers = registered_constraints()
-    for asked in cell.registered:
-        maker = makers.get(asked.use)
-        if maker is None:
-            known = ", ".join(sorted(makers)) or "none"
-            data: dict[str, Any] = {
-                "use": asked.use,
-                "near": near_matches(asked.use, sorted(makers)),
-                "known": known,
-            }
-            raise CellError(report("IRL617", asked.place, **data))
-        constraint = maker(plain)
-        broken = float(np.max(np.abs(constraint.residual(cell.start)), initial=0.0))
-        if not broken <= CONDITION:
-            told: dict[str, Any] = {"name": asked.name, "found": f"{broken:.6g}", "due": "0"}
-            raise CellError(report("IRL616", asked.place, **told))
-        found.append(constraint)
-    return plain.constrained(found)
+    return constrained(Kinematics(cell.robot), cell)
 
 
 def header_of(job: Job) -> StreamHeader:

@@ -23,9 +23,14 @@ needs_robot_data = pytest.mark.skipif(
 )
 AXES = {"baxter_left": 7, "baxter_right": 7, "kinova": 6, "panda": 7, "talos_left": 9, "tiago": 8}
 AXES |= {"ur10": 6, "ur3": 6, "ur5": 6, "xarm7": 7, "z1": 6}
-OWN = {"arm7": 7, "rail6": 7, "mobile8": 8}
-WEIGHTS = {"mobile8": [60, 60, 6, 5, 4, 3, 2, 1]}
-MASSES = {"mobile8": 200.0}
+OWN = {"arm7": 7, "rail6": 7, "mobile8": 8, "mobile9": 9, "gantry9": 9, "snake20": 20}
+WEIGHTS = {
+    "mobile8": [60, 60, 6, 5, 4, 3, 2, 1],
+    "mobile9": [60, 60, 30, 6, 5, 4, 3, 2, 1],
+    "gantry9": [30, 25, 20, 6, 5, 4, 3, 2, 1],
+    "snake20": list(range(20, 0, -1)),
+}
+MASSES = {"mobile8": 200.0, "mobile9": 200.0, "gantry9": 350.0}
 """Weights of robots that bring their own: those of the platform are per m2."""
 
 
@@ -41,7 +46,19 @@ def smallest_singular_value(found):
 
 @pytest.mark.req("CELL-04")
 def test_names():
-    assert packaged_names() == ("arm7", "dual14", "koch11", "mobile8", "planar3", "planar4", "rail6")
+    names = (
+        "arm7",
+        "dual14",
+        "gantry9",
+        "koch11",
+        "mobile8",
+        "mobile9",
+        "planar3",
+        "planar4",
+        "rail6",
+        "snake20",
+    )
+    assert packaged_names() == names
     assert external_names() == tuple(sorted(AXES))
     assert robot_names() == packaged_names() + external_names()
 
@@ -60,38 +77,20 @@ def test_robots_of_our_own_start_well(cell, name):
     assert smallest_singular_value(found) > 0.2
 
 
+ARM = [(0.08, 0, 0.2), (0, 0, 0.42), (0.18, 0, 0.05), (0.2, 0, 0), (0.07, 0, 0)]
+"""Steps of the 6-axis arm from the second of its axes to the last."""
 CHAINS = {
     "arm7": ("zyzyzyz", [(0, 0, h) for h in (0.18, 0.13, 0.2, 0.2, 0.18, 0.18, 0.07)], (0, 0, 0.07)),
-    "rail6": (
-        "|zyyxyx",
-        [
-            (0, 0, 0.12),
-            (0, 0, 0.18),
-            (0.08, 0, 0.2),
-            (0, 0, 0.42),
-            (0.18, 0, 0.05),
-            (0.2, 0, 0),
-            (0.07, 0, 0),
-        ],
-        (0.05, 0, 0),
-    ),
-    "mobile8": (
-        "-|zyyxyx",
-        [
-            (0, 0, 0.06),
-            (0, 0, 0),
-            (0.1, 0, 0.24),
-            (0.08, 0, 0.2),
-            (0, 0, 0.42),
-            (0.18, 0, 0.05),
-            (0.2, 0, 0),
-            (0.07, 0, 0),
-        ],
-        (0.05, 0, 0),
-    ),
+    "rail6": ("|zyyxyx", [(0, 0, 0.12), (0, 0, 0.18), *ARM], (0.05, 0, 0)),
+    "mobile8": ("-|zyyxyx", [(0, 0, 0.06), (0, 0, 0), (0.1, 0, 0.24), *ARM], (0.05, 0, 0)),
+    "mobile9": ("-|zzyyxyx", [(0, 0, 0.06), (0, 0, 0), (0, 0, 0), (0.1, 0, 0.24), *ARM], (0.05, 0, 0)),
+    "gantry9": ("-|!zyyxyx", [(0, 0, 3), (0, 0, 0.12), (0, 0, -0.62), (0, 0, -0.8), *ARM], (0.05, 0, 0)),
+    "snake20": ("zy" * 10, [(0.12, 0, 0.5), *[(0.08, 0, 0)] * 19], (0.08, 0, 0)),
 }
-SLIDES = {"|": (0, 1, 0), "-": (1, 0, 0)}
-"""Axes (slides | along y, - along x), the steps to them, and to the tool, m: as the reference draws them."""
+HANGS = {"gantry9": 3}
+"""The axis whose frame is turned by half a circle about x: from there on the arm hangs."""
+SLIDES = {"|": (0, 1, 0), "-": (1, 0, 0), "!": (0, 0, 1)}
+"""Axes (slides - | ! along x, y, z), the steps to them, and to the tool, m: as the reference draws them."""
 
 
 @pytest.mark.req("CELL-04")
@@ -101,13 +100,15 @@ def test_geometry_of_our_own(cell, name):
     axes, steps, tool = CHAINS[name]
     kinematics = Kinematics(found.robot)
     model = pin.buildModelFromXML(packaged_urdf(name))
-    assert 15.0 < sum(inertia.mass for inertia in model.inertias[1:]) < MASSES.get(name, 100.0)
+    assert 6.0 < sum(inertia.mass for inertia in model.inertias[1:]) < MASSES.get(name, 100.0)
     rng = np.random.default_rng(7)
     for _ in range(20):
         q = rng.uniform(found.limits.position_lower, found.limits.position_upper)
         position, rotation = np.zeros(3), Rotation.identity()
-        for axis, step, value in zip(axes, steps, q, strict=True):
+        for number, (axis, step, value) in enumerate(zip(axes, steps, q, strict=True)):
             position = position + rotation.apply(step)
+            if number == HANGS.get(name):
+                rotation = rotation * Rotation.from_euler("x", np.pi)
             if axis in SLIDES:
                 position = position + rotation.apply(value * np.array(SLIDES[axis]))
             else:

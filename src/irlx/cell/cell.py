@@ -12,7 +12,7 @@ from irlx.blocks.link_frame import LinkFrame
 from irlx.diagnostics import Diagnostic, Place
 from irlx.robot.description import RobotDescription
 from irlx.robot.limits import JointLimits
-from irlx.robot.relation import JointRelation
+from irlx.robot.relation import Relation
 from irlx.scene.scene import Scene
 
 Array = NDArray[np.float64]
@@ -73,7 +73,7 @@ class Cell:
     motion: MotionDefaults
     frames: Mapping[str, NamedFrame]
     warnings: tuple[Diagnostic, ...] = ()
-    relations: tuple[JointRelation, ...] = ()
+    relations: tuple[Relation, ...] = ()
     registered: tuple[RegisteredConstraint, ...] = ()
     inputs: Mapping[str, tuple[tuple[float, float], ...]] = field(default_factory=dict)
     scene: Scene = field(default_factory=Scene)

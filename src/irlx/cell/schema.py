@@ -18,6 +18,7 @@ NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
 Percent = Annotated[float, Field(gt=0.0, le=100.0)]
 Coordinate = Literal["x", "y", "z", "rx", "ry", "rz"]
 Vector = Annotated[list[Number], Field(min_length=3, max_length=3)]
+PlanePoint = Annotated[list[Number], Field(min_length=2, max_length=2)]
 
 
 def _frame_name(name: str) -> str:
@@ -157,12 +158,21 @@ class ConstraintSection(Section):
 
     `joints`: a factor for each joint that takes part; sum of factor times joint value = `value` (deg | mm),
     by default that of the start posture. `use` instead: the name of a constraint registered in Python.
+    `axis` instead: a vector in the frame of `link` that points along `direction`, a vector in the root frame.
+    `path` instead: points x, y (mm, in the root frame) of a curve, `closed` or not, on which the origin of
+    `link` stays, seen from above; with `heading` its x axis points along the curve.
     """
 
     name: Annotated[str, Field(min_length=1)]
     joints: Annotated[dict[str, Number], Field(min_length=1)] | None = None
     value: Number | None = None
     use: str | None = None
+    link: str | None = None
+    axis: Vector | None = None
+    direction: Vector | None = None
+    path: list[PlanePoint] | None = None
+    closed: bool = False
+    heading: bool = False
 
 
 class WaypointSection(Section):

@@ -53,7 +53,7 @@ def broken_condition(q: Array, kinematics: Kinematics) -> tuple[int, Constraint,
     """A row of q (N, n) that breaks a constraint by more than `CONDITION`, the constraint, and how much."""
     for constraint in kinematics.constraints:
         for row, posture in enumerate(q):
-            broken = float(np.max(np.abs(constraint.residual(posture)), initial=0.0))
+            broken = float(np.linalg.norm(constraint.residual(posture)))
             if not broken <= CONDITION:
                 return row, constraint, broken
     return None

@@ -47,6 +47,7 @@ from irlx.pacing.inputs import answer_of_inputs
 from irlx.pacing.joint_moves import move_joints
 from irlx.pacing.kept_clear import kept_clear
 from irlx.pacing.motion import Motion
+from irlx.pacing.moved_constraints import moved_constraints
 from irlx.pacing.nearest_rows import nearest_rows
 from irlx.pacing.notes import Notes
 from irlx.pacing.options import LimitsInForce, Options, SwitchBlock
@@ -88,6 +89,7 @@ class Pacer:
         self._links_checked = False
         self._clearance = kept_clear(setup.kinematics, setup.scene, self.options)
         self._rest: MoveBlock | None = None
+        self._constraints = setup.kinematics.constraints
 
     def _new_solver(self) -> TickSolver:
         """What solves the ticks: roughly in a dry run."""
@@ -266,7 +268,7 @@ class Pacer:
         if isinstance(block, LimitSwitchBlock):
             self.warnings += check_limit(block, self._robot, self.setup.limits, self.q, place)
         if isinstance(block, FreezeBlock):
-            check_freeze(block, self._robot, self.setup.kinematics.rows, place)
+            self._freeze(block, place)
         if isinstance(block, CriterionBlock) and block.choice is not None:
             from irlx.pacing.criteria import check_criterion
 
@@ -284,6 +286,21 @@ class Pacer:
             names = [obstacle.name for obstacle in self._setup.scene.members(block.name)]
             self.warnings += standing(self._clear_from_now, self.q, names, place)
         return None
+
+    def _freeze(self, block: FreezeBlock, place: Place) -> None:
+        """From now on ticks meet only what the other joints can break. Raises as `check_freeze` does."""
+        known = [number - 1 for number in block.joints if 1 <= number <= self.q.size]
+        free = np.ones(self.q.size, dtype=bool)
+        free[known] = False
+        kinematics = self.setup.kinematics
+        constraints = moved_constraints(self._constraints, self._robot, self.q, free)
+        if constraints != kinematics.constraints:
+            kinematics = kinematics.constrained(constraints)
+        check_freeze(block, self._robot, kinematics.rows, place)
+        if kinematics is not self.setup.kinematics:
+            self._setup = replace(self._setup, kinematics=kinematics)
+            self._solver = self._new_solver()
+            self._clearance = kept_clear(kinematics, self._setup.scene, self.options)
 
     def _motion(self, moves: list[MoveBlock]) -> Motion:
         """The first motion from stop to stop that moves become."""

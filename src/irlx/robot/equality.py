@@ -11,6 +11,9 @@ from irlx.robot.relation import JointRelation
 
 Array = NDArray[np.float64]
 
+STILL = 1e-12
+"""Derivatives below this, of rad or m by rad or m, are rounding."""
+
 
 class Constraint(ABC):
     """k equations Phi(q) = 0 between the joints (n,); their rows come after those of the tool pose.
@@ -28,6 +31,19 @@ class Constraint(ABC):
     @abstractmethod
     def derivative(self, q: Array) -> Array:
         """Derivative of Phi by q, shape (k, n)."""
+
+    def rows(self, q: Array) -> tuple[Array, Array]:
+        """Both at once, for those that have much in common."""
+        return self.residual(q), self.derivative(q)
+
+    def breakable(self, postures: Array, free: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Which of the k equations joints `free` (n,) can break, the others standing as in `postures` (P, n).
+
+        Those whose derivative by the free joints is not zero at all of these postures, which were drawn at
+        random: right for whatever is not flat in some places and steep in others.
+        """
+        slopes = np.array([self.derivative(q)[:, free] for q in postures])
+        return np.asarray(np.any(np.abs(slopes) > STILL, axis=(0, 2)))
 
 
 class LinearConstraint(Constraint):

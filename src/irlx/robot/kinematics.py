@@ -227,9 +227,9 @@ class Kinematics:
                 matrix = pin.Jlog6(apart) @ apart.inverse().action @ matrix
         if not self.constraints:
             return left, matrix
-        residuals = [-item.residual(q) for item in self.constraints]
-        derivatives = [item.derivative(q) for item in self.constraints]
-        return np.concatenate([left, *residuals]), np.vstack([matrix, *derivatives])
+        rows = [item.rows(q) for item in self.constraints]
+        residuals, derivatives = zip(*rows, strict=True)
+        return np.concatenate([left, *(-one for one in residuals)]), np.concatenate([matrix, *derivatives])
 
     def sizes(self, left: Array) -> Sizes:
         """What is left (m,), as `difference` gives it first, in three numbers."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from irlx.blocks import MoveKind
 from irlx.robot.description import RobotDescription
-from irlx.robot.relation import JointRelation
+from irlx.robot.relation import Relation
 from irlx.scene.scene import Scene
 from irlx.streams.joint_stream import Floats
 from irlx.verifier.chain_legs import end_reach
@@ -36,7 +36,7 @@ class Evidence:
     outline: Outline
     robot: RobotDescription | None
     start: Floats | None = None
-    relations: tuple[JointRelation, ...] = ()
+    relations: tuple[Relation, ...] = ()
     blocks_fit: bool = True
     scene: Scene | None = None
 

@@ -53,6 +53,11 @@ CELL = (
         "a line for each change: 2.5,IN_3,TRUE below the header time,input,value",
     ),
     error(
+        "IRL619",
+        "the start posture breaks the constraint '{name}': {off}",
+        "give a robot.start that keeps it: it holds from the first row on",
+    ),
+    error(
         "IRL620",
         "{joint} starts at {found} {unit}, outside its limits {lower} to {upper} {unit}",
         "a run can only start inside the limits: change robot.start or robot.limits.position",
@@ -61,6 +66,20 @@ CELL = (
         "IRL621",
         "no joint has an acceleration limit, so every change of speed within a tick is allowed",
         "give robot.limits.acceleration in the cell file",
+    ),
+    error(
+        "IRL624",
+        "the constraint '{name}' holds {rows} coordinates, but beside the tool's pose and the constraints "
+        "before it joints can move {left} of them",
+        "a constraint is for what is left to choose, not for what the pose says already or no joint moves",
+    ),
+    error(
+        "IRL626", "{key}: {cause}", "neighbours are at least 1 mm apart; a path needs two, a closed one three"
+    ),
+    error(
+        "IRL627",
+        "{key}: the curve through the points {cause}",
+        "bends need a radius of 10 mm, and one part stays 20 mm off another: move or leave out points",
     ),
     error("IRL630", "{key}: no shape '{shape}'{near}", "shapes are {known}"),
     error("IRL631", "{key}: a {shape} needs {missing}"),

@@ -14,7 +14,8 @@ NO_CASE = "no case"
 class Finding:
     """A value at a place: what is allowed there, tick, joint name (or None), block id, program line, unit.
 
-    `pair` names two bodies where the value is a distance between them.
+    `pair` names two bodies where the value is a distance between them, `constraint` that of the cell which
+    the value is of.
     """
 
     value: float
@@ -25,10 +26,12 @@ class Finding:
     line: int | None = None
     unit: str = ""
     pair: str | None = None
+    constraint: str | None = None
 
     def __str__(self) -> str:
         joint = f", joint {self.joint}" if self.joint is not None else ""
         joint += f", {self.pair}" if self.pair is not None else ""
+        joint += f", {self.constraint}" if self.constraint is not None else ""
         line = f", line {self.line}" if self.line is not None else ""
         block = f", block {self.block}" if self.block else ""
         unit = f" {self.unit}" if self.unit else ""

@@ -71,6 +71,8 @@ def _row(check: Check) -> tuple[str, ...]:
         place.append(f"joint {worst.joint}")
     if worst.pair is not None:
         place.append(worst.pair)
+    if worst.constraint is not None:
+        place.append(worst.constraint)
     if worst.line is not None:
         place.append(f"line {worst.line}")
     return check.name, status, f"{worst.value:.6g}{unit}", f"{worst.allowed:.6g}", ", ".join(place)
@@ -113,6 +115,7 @@ def _finding_to_plain(finding: Finding | None) -> dict[str, Any] | None:
         "line": finding.line,
         "unit": finding.unit,
         **({} if finding.pair is None else {"pair": finding.pair}),
+        **({} if finding.constraint is None else {"constraint": finding.constraint}),
     }
 
 

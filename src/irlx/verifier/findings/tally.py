@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -32,9 +35,10 @@ class Tally:
         rank: Floats | None = None,
         unit: str = "",
         pair: str | None = None,
+        constraint: str | None = None,
     ) -> None:
         """Add the values of `rows` (indices into the stream), in one `unit` where the check has several;
-        all of one `pair` of bodies where they are distances.
+        all of one `pair` of bodies where they are distances, or of one `constraint`.
 
         By default a value offends where it is not <= `allowed` (so that nan does), and the worst is
         the largest. `rank` orders values otherwise; rank -inf never becomes the worst.
@@ -45,18 +49,17 @@ class Tally:
         allowed = np.broadcast_to(np.asarray(allowed, dtype=np.float64), value.shape)
         offends = ~(value <= allowed) if offends is None else offends
         rank = value if rank is None else rank
+        of: dict[str, Any] = {"pair": pair, "constraint": constraint}
         top = int(np.argmax(rank))
         if rank.flat[top] > self._worst_rank:
             self._worst_rank = float(rank.flat[top])
-            self._worst = self._finding(rows, value, allowed, top, unit, pair)
+            self._worst = replace(self._finding(rows, value, allowed, top, unit), **of)
         if offends.any():
-            found = self._finding(rows, value, allowed, _first(offends, rank), unit, pair)
+            found = replace(self._finding(rows, value, allowed, _first(offends, rank), unit), **of)
             if self._first is None or found.tick < self._first.tick:
                 self._first = found
 
-    def _finding(
-        self, rows: Integers, value: Floats, allowed: Floats, flat: int, unit: str, pair: str | None
-    ) -> Finding:
+    def _finding(self, rows: Integers, value: Floats, allowed: Floats, flat: int, unit: str) -> Finding:
         row = int(rows[flat if value.ndim == 1 else flat // value.shape[1]])
         names = self._outline.header.joint_names
         joint = None if value.ndim == 1 else names[flat % value.shape[1]]
@@ -64,7 +67,7 @@ class Tally:
         line = self._outline.lines.get(block)
         unit = unit or self._unit_of(joint)
         found = float(value.flat[flat]), float(allowed.flat[flat])
-        return Finding(*found, row, joint, block, line, unit, pair)
+        return Finding(*found, row, joint, block, line, unit)
 
     def _unit_of(self, joint: str | None) -> str:
         """The check's unit; of units for joints that turn and slide ('rad/s|m/s') the joint's own."""

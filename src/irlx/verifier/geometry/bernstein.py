@@ -38,7 +38,7 @@ MOST_STEPS, LAST_STEP = 40, 1e-13
 
 
 def nearest_parameters(
-    jet: Callable[[Floats], Jets], positions: Floats, seeds: Floats, cell: float, most: float
+    jet: Callable[[Floats], Jets], positions: Floats, seeds: Floats, cell: float | Floats, most: float
 ) -> Floats:
     """Parameters (R,) in 0..`most` of the points nearest to positions (R, 3), within a `cell` of their seeds.
 

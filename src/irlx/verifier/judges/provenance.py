@@ -9,7 +9,7 @@ import numpy as np
 from irlx.promises import TOOL_ORIENTATION, TOOL_POSITION, rounding_allowance
 from irlx.robot.description import RobotDescription
 from irlx.robot.limits import JointLimits
-from irlx.robot.relation import JointRelation
+from irlx.robot.relation import Relation
 from irlx.scene.scene import Scene
 from irlx.streams.joint_stream import Floats, StreamHeader
 from irlx.verifier.evidence import Evidence
@@ -28,7 +28,7 @@ class Reference:
     robot: RobotDescription
     limits: JointLimits | None = None
     start: Floats | None = None
-    relations: tuple[JointRelation, ...] = ()
+    relations: tuple[Relation, ...] = ()
     scene: Scene | None = None
 
 
