@@ -20,15 +20,16 @@ def frame_of(block: Block) -> LinkFrame | None:
 
 
 def seen_from(kinematics: Kinematics, frame: LinkFrame | None, place: Place) -> Kinematics:
-    """The robot with the poses of its tool told in a frame, None for the world.
+    """The robot with the poses of its tool told in a frame, None for the world; for motions to poses.
 
-    Raises PacingError: IRL515 where it has no such link, as in a stream of another robot.
+    Constraints that the pose implies are no rows there. Raises PacingError: IRL515 where it has no such link,
+    as in a stream of another robot.
     """
     if frame is None:
-        return kinematics
+        return kinematics.of_pose
     robot = kinematics.description
     links = (robot.root, *(joint.child for joint in robot.joints))
     if frame.link not in links:
         data: dict[str, Any] = {"name": frame.name, "link": frame.link, "robot": robot.name}
         raise PacingError(report("IRL515", place, near=near_matches(frame.link, links), **data))
-    return kinematics.relative_to(frame)
+    return kinematics.relative_to(frame).of_pose

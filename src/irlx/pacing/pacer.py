@@ -113,13 +113,14 @@ class Pacer:
             time = self.tick * self.setup.dt
             return self._distances.answer(question, time, self.locate(question.origin))
         if isinstance(question, AskAvoidingPosture):
-            return avoiding_posture(question, self._situation)
+            place = self.locate(question.origin)
+            return avoiding_posture(question, self._situation.in_frame(None, place))
         if isinstance(question, AskLastMove):
             return answer_of_last_move(*self._last_way)
         if isinstance(question, AskJointBounds):
             return answer_of_bounds(self._situation.in_force().limits)
-        situation = self._situation
         target, place = PoseTarget(question.position, question.orientation), self.locate(question.origin)
+        situation = self._situation.in_frame(None, place)
         near = np.array(question.near) if isinstance(question, AskNearestPosture) else None
         return tuple(posture_of_pose(target, near, situation, situation.in_force(), place).tolist())
 

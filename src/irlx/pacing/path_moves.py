@@ -14,7 +14,7 @@ from irlx.motion.errors import MotionError
 from irlx.motion.plan_chain import Leg, PlannedChain, lost_blend, plan_chain
 from irlx.motion.plan_circle import circle_path
 from irlx.motion.whole_ticks import ticks_of_move
-from irlx.pacing.conditions import broken_condition, check_targets
+from irlx.pacing.conditions import broken_condition, check_implied, check_targets
 from irlx.pacing.demand import Demand
 from irlx.pacing.drawn_to import check_postures, postures_asked, term_of, warn_of_posture_left
 from irlx.pacing.errors import PacingError
@@ -98,6 +98,7 @@ def _motion(
         around = Surroundings(situation.kinematics, in_force.limits, situation.free, told, clear, situation.q)
         goal = goal_shortfall(around, plan.path.end_rotation, plan.path.end_position, situation.q)
         raise PacingError(explain_failure(paced, around, plan, situation.tick + 1, goal, place))
+    check_implied(paced.q, situation.kinematics, place)
     warn_of_posture_left(situation, drawn, paced.q[-1], block, place)
     rows = _rows(situation, block, plan, paced)
     touched = len(plan.ends)

@@ -97,13 +97,13 @@ class Situation:
         return self.kinematics.tool_pose(self.q)
 
     def in_frame(self, frame: LinkFrame | None, place: Place) -> Situation:
-        """The same with poses told in a frame that moves with a link; itself for the world.
+        """The same for motions to poses, which are told in a frame that moves with a link or in the world.
 
         Raises PacingError: IRL515 where the robot has no such link.
         """
-        if frame is None:
+        kinematics = seen_from(self.kinematics, frame, place)
+        if kinematics is self.kinematics:
             return self
-        kinematics = seen_from(self.kinematics.world, frame, place)
         setup = replace(self.setup, kinematics=kinematics)
         return replace(self, setup=setup, solver=type(self.solver)(kinematics, self.qp))
 

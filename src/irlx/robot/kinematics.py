@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from irlx.blocks.link_frame import LinkFrame
 from irlx.robot.description import COORDINATES, Inertial, Joint, JointKind, RobotDescription
 from irlx.robot.equality import Constraint
+from irlx.robot.implied import implied_by_pose
 from irlx.robot.task import Task, partial_difference
 
 Array = NDArray[np.float64]
@@ -89,7 +90,10 @@ class Kinematics:
         description: RobotDescription,
         constraints: Sequence[Constraint] = (),
         tool: pin.SE3 | None = None,
+        implied: Sequence[Constraint] = (),
     ) -> None:
+        """`implied` are conditions that are no rows, because the pose of the tool keeps or breaks them."""
+        self.implied = tuple(implied)
         self.description = description
         self._tool = pin.SE3.Identity() if tool is None else tool
         self.constraints = tuple(constraints)
@@ -127,6 +131,16 @@ class Kinematics:
         x, y, z, w = orientation
         turn = pin.Quaternion(w, x, y, z).normalized().toRotationMatrix()
         return Kinematics(self.description, self.constraints, pin.SE3(turn, np.array(position)))
+
+    @cached_property
+    def of_pose(self) -> Kinematics:
+        """The same robot for motions that demand poses: constraints that the pose keeps or breaks by itself
+        are `implied`, and no rows."""
+        implied = implied_by_pose(self) if self.constraints else ()
+        if not implied:
+            return self
+        kept = [item for item in self.constraints if item not in implied]
+        return Kinematics(self.description, kept, self._tool, implied)
 
     @property
     def world(self) -> Kinematics:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 
 import numpy as np
 import pinocchio as pin
 
 from irlx.blocks.link_frame import LinkFrame
 from irlx.robot.equality import Constraint
+from irlx.robot.implied import implied_by_pose
 from irlx.robot.kinematics import Array, Kinematics
 
 _LOCAL = pin.ReferenceFrame.LOCAL
@@ -33,10 +35,21 @@ class RelativeKinematics(Kinematics):
         own = in_parent * pin.SE3(turn, np.array(frame.position))
         # Two robots may have links of any name, so that the frame's own tells it from the tip's.
         name = f"frame {frame.name}"
-        self._frame = self.model.addFrame(pin.Frame(name, parent, 0, own, pin.FrameType.OP_FRAME))
+        self._seen_by = self.model.addFrame(pin.Frame(name, parent, 0, own, pin.FrameType.OP_FRAME))
         self.data = self.model.createData()
         reach = self.description.reach + self.description.reach_to(frame.link)
         self.row_scale[: self.task.linear] = 1.0 / reach
+
+    @cached_property
+    def of_pose(self) -> Kinematics:
+        """The same robot seen from the same frame, without constraints that its pose there implies."""
+        implied = implied_by_pose(self) if self.constraints else ()
+        if not implied:
+            return self
+        kept = [item for item in self.constraints if item not in implied]
+        found = RelativeKinematics(self._world.constrained(kept), self.frame)
+        found.implied = implied
+        return found
 
     @property
     def world(self) -> Kinematics:
@@ -69,11 +82,11 @@ class RelativeKinematics(Kinematics):
     def _seen(self) -> pin.SE3:
         """T at the posture that the data hold."""
         tool = pin.updateFramePlacement(self.model, self.data, self._tip_frame)
-        return pin.updateFramePlacement(self.model, self.data, self._frame).actInv(tool)
+        return pin.updateFramePlacement(self.model, self.data, self._seen_by).actInv(tool)
 
     def _pose_and_jacobian(self, q: Array) -> tuple[pin.SE3, Array]:
         pin.computeJointJacobians(self.model, self.data, q)
         pose = self._seen()
         of_tool = pin.getFrameJacobian(self.model, self.data, self._tip_frame, _LOCAL)
-        of_frame = pin.getFrameJacobian(self.model, self.data, self._frame, _LOCAL)
+        of_frame = pin.getFrameJacobian(self.model, self.data, self._seen_by, _LOCAL)
         return pose, of_tool - pose.inverse().action @ of_frame

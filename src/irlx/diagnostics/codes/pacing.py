@@ -124,6 +124,11 @@ PACING = (
         "a motion in the frame '{frame}', which moves with a link, cannot be corrected",
         "corrections and obstacles that are seen count in the world: run the program without them",
     ),
+    error(
+        "IRL441",
+        "the poses of this move break the constraint '{name}', by {broken} rad or m",
+        "what it asks for is told by the pose alone: give the targets an orientation that keeps it",
+    ),
     warning(
         "IRL445",
         "limits make this move {lost} s longer than programmed, {share} %: at {way} of {length} the tool has "
