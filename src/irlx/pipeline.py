@@ -10,8 +10,9 @@ from math import radians
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
-from irlx.blocks import AskPause, AskStandstill, Block, Origin, Question
+from irlx.blocks import AskPause, AskStandstill, Block, LinkFrame, Origin, Question
 from irlx.cell.setting import setting_of
 from irlx.diagnostics import Diagnostic, IrlxError, Place, report
 from irlx.interpreter.channels.channels import Channels, Told
@@ -227,6 +228,11 @@ class Execution:
         place = self._pacer.locate(rows.block.origin)
         kinematics = seen_from(setup.kinematics, frame_of(rows.block), place)
         return explain_row(rows, before, tick, limits, setup.weights, kinematics, dt)
+
+    def tool_in(self, frame: LinkFrame, q: Array) -> Array:
+        """Position (m) and quaternion, (7,), of the tool in posture q (n,), as a frame of a link sees it."""
+        rotation, position = self._pacer.setup.kinematics.relative_to(frame).tool_pose(q)
+        return np.concatenate([position, Rotation.from_matrix(rotation).as_quat()])
 
     def start(self) -> tuple[StreamHeader, Array, Array, Array]:
         """Header of the stream; start posture (n,), and the tool's rotation (3, 3), position (3,) m in it."""

@@ -243,6 +243,21 @@ def test_corrections_are_refused(written):
     assert "IRL440" in {one.code for one in caught.value.diagnostics}
 
 
+def test_returns_in_the_frame_are_told(ran):
+    there = f"MOVE LIN POSE(POSITION(30, 0, 20), {DOWN}) IN FRAME pipe;"
+    away = "MOVE LIN POSITION(-30, 20, 30), POSITION(30, 0, 20) IN FRAME pipe;"
+    (found,) = ran(f"{there} CYCLICSTART; {away} CYCLICEND;").summary.returns
+    assert found.closed
+    # With a joint frozen elsewhere both hands end elsewhere in the world, the tool where it was in the frame.
+    bent = "RECONFIGURATION MAIN_JOINT(20, 60, 50, 90, 40, -60, 100, 30, 70, -30, 60, 130, -60, 60) IN FRAME pipe;"
+    led_away = ran(f"{there} CYCLICSTART; {bent} FREEZESTART 1; {away} FREEZEEND; CYCLICEND;")
+    (found,) = led_away.summary.returns
+    assert (found.closed, found.held) == (False, "joint 1 frozen")
+    first, last = ends(led_away)[[0, -1]]
+    assert seen([first])[1] == pytest.approx(seen([last])[1], abs=1e-9)
+    assert np.linalg.norm(pin_world(first) - pin_world(last)) > 0.01
+
+
 def altered(found: irlx.Run, change) -> object:
     """The stream with other frames in its blocks."""
     records = tuple(

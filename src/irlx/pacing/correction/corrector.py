@@ -85,8 +85,8 @@ class Corrector:
         self._pacer = pacer
         setup = pacer.setup
         self._rates, self._senses = rates, senses
-        self._solver = TickSolver(setup.kinematics, pacer.qp, NEWTON_STEPS)
-        self._modelled = setup.kinematics
+        self._solver = TickSolver(setup.kinematics.of_pose, pacer.qp, NEWTON_STEPS)
+        self._modelled = setup.kinematics.of_pose
         rotation, position = setup.kinematics.tool_pose(setup.start)
         start = PlannedRow(setup.start, rotation, position, setup.start, setup.start, None)
         self._now = uncorrected(start)
@@ -140,8 +140,8 @@ class Corrector:
 
     def _surroundings(self, motion: PlannedMotion) -> Surroundings:
         setup = self._pacer.setup
-        if setup.kinematics is not self._solver.kinematics:
-            self._solver = TickSolver(setup.kinematics, self._pacer.qp, NEWTON_STEPS)
+        if setup.kinematics.of_pose is not self._solver.kinematics:
+            self._solver = TickSolver(setup.kinematics.of_pose, self._pacer.qp, NEWTON_STEPS)
         limiter = OffsetLimiter(correction_limits(motion.limits), setup.dt)
         clearance = self._pacer.clearance
         return Surroundings(self._solver, setup.weights, motion.free, limiter, self._rates, clearance)
