@@ -249,8 +249,9 @@ def test_returns_in_the_frame_are_told(ran):
     (found,) = ran(f"{there} CYCLICSTART; {away} CYCLICEND;").summary.returns
     assert found.closed
     # With a joint frozen elsewhere both hands end elsewhere in the world, the tool where it was in the frame.
-    bent = "RECONFIGURATION MAIN_JOINT(20, 60, 50, 90, 40, -60, 100, 30, 70, -30, 60, 130, -60, 60) IN FRAME pipe;"
-    led_away = ran(f"{there} CYCLICSTART; {bent} FREEZESTART 1; {away} FREEZEEND; CYCLICEND;")
+    bent = "MAIN_JOINT(20, 60, 50, 90, 40, -60, 100, 30, 70, -30, 60, 130, -60, 60)"
+    elsewhere = f"RECONFIGURATION {bent} IN FRAME pipe; FREEZESTART 1;"
+    led_away = ran(f"{there} CYCLICSTART; {elsewhere} {away} FREEZEEND; CYCLICEND;")
     (found,) = led_away.summary.returns
     assert (found.closed, found.held) == (False, "joint 1 frozen")
     first, last = ends(led_away)[[0, -1]]
