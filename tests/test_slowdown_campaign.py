@@ -18,6 +18,7 @@ import irlx
 from irlx.cell.cell import Cell
 from irlx.cell.load import load_cell
 from irlx.cell.robot_data import robot_data_folder
+from long_run import chequered
 from machines import machine
 from stream_judge import Written, excess, on_line
 
@@ -216,8 +217,7 @@ def cases(count: int) -> list:
     ]
 
 
-@pytest.mark.parametrize("tick", TICKS)
-@pytest.mark.parametrize(("name", "seeds"), cases(QUICK))
+@pytest.mark.parametrize(("name", "seeds", "tick"), chequered(cases(QUICK), TICKS))
 def test_bounds_and_path_hold_or_the_refusal_is_located(
     tmp_path, name: str, seeds: range, tick: float
 ) -> None:

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 import irlx
+from irlx.cli.main import main
 
 ROOT = Path(__file__).resolve().parents[1]
 TUTORIAL = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
@@ -45,11 +46,18 @@ def run(arguments: list[str], folder: Path) -> str:
 
 
 @pytest.mark.req("QA-10")
-def test_commands_print_what_is_shown(folder):
+def test_commands_print_what_is_shown(folder, monkeypatch, capsys):
+    monkeypatch.chdir(folder)
     for session in fenced("console"):
         commands = [line[2:] for line in session.splitlines() if line.startswith("$ ")]
         shown = [line for line in session.splitlines() if line and not line.startswith("$ ")]
-        printed = "".join(run(["-m", *shlex.split(command)], folder) for command in commands)
+        printed = ""
+        for command in commands:
+            assert command.startswith("irlx ")
+            status = main(shlex.split(command)[1:])
+            told = capsys.readouterr()
+            assert status == 0, (command, told.err)
+            printed += told.out
         for line in shown:
             assert (line.split()[0] if line.startswith(ROUNDING) else line) in printed
 

@@ -67,6 +67,7 @@ class Execution:
             resolution=resolution,
             planned_share=planned_share,
             scene=replace(cell.scene, sightings=sightings),
+            may_free=job.program.has_tolerances,
         )
         self.kinematics = setup.kinematics
         self._pacer = Pacer(setup, self._locate)

@@ -88,6 +88,12 @@ class Program:
         return self.tree.name.name
 
     @property
+    def has_tolerances(self) -> bool:
+        """Whether any move in it, or in its modules, is WITH TOLERANCE."""
+        roots = (self.tree, *(module.tree for module in self.modules))
+        return any(isinstance(node, tree.WithTolerance) for root in roots for node in tree.walk(root))
+
+    @property
     def all_lists(self) -> tuple[DataListFile, ...]:
         """Data lists of the program and its modules, each file once."""
         of_modules = (found for module in self.modules for found in module.data_lists)

@@ -18,6 +18,9 @@ it stands during a RECONFIGURATION, m."""
 PATH_ORIENTATION = 1e-6
 """Largest angle between the tool's orientation and the programmed one, in the same places, rad."""
 
+TOLERANCE_BAND = 1e-9
+"""Largest amount by which the tool passes a band of WITH TOLERANCE, m or rad."""
+
 PATH_STEP = 1e-9
 """What rounding of a tool pose may pretend, m or rad. Never backwards, never faster than programmed: a step
 along the path may be shorter than 0 by this, speeds of the tool exceed by 2 PATH_STEP/dt, accelerations by

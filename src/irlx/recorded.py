@@ -66,6 +66,12 @@ class Recorded:
         """Digest of that program."""
         return self.header.program_sha256
 
+    @property
+    def has_tolerances(self) -> bool:
+        """Whether any of its moves is WITH TOLERANCE."""
+        blocks = (record.block for record in self.records)
+        return any(isinstance(block, MoveBlock) and block.tolerance is not None for block in blocks)
+
     def place(self, origin: Origin) -> Place:
         """Where a block comes from: in the text, or the line alone where the text is not there."""
         if self.source is not None and origin.file == self.file_name:

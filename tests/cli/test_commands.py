@@ -64,18 +64,14 @@ def test_json(command, folder):
 
 
 def test_json_of_a_run_that_ends_early(inside, folder, names):
-    text = (
-        (folder / "p.irl")
-        .read_text()
-        .replace("MOVE LIN home;", "MOVE LIN home WITH TOLERANCE (0, 0, 0, 0, 0, 9);")
-    )
+    text = (folder / "p.irl").read_text().replace("MOVE LIN home;", "MOVE LIN home TIME := 0.01;")
     (folder / "p.irl").write_text(text)
     done = inside("run", "p.irl", "--json")
     found = json.loads(done.stdout)
     assert done.returncode == 1
     assert found["summary"]["complete"] is False
-    assert [d["code"] for d in found["diagnostics"]] == ["IRL590"]
-    assert found["diagnostics"][0]["place"] == "p.irl:5:17"
+    assert [d["code"] for d in found["diagnostics"]] == ["IRL421"]
+    assert found["diagnostics"][0]["place"] == "p.irl:5:3"
     assert names(folder) == ["p.irl", "p.partial.irdata", "p.toml"]
 
 

@@ -119,8 +119,15 @@ def run(tmp_path: Path):
     return make
 
 
-@pytest.mark.parametrize("sensor", ["white", "turned step", "out of reach", "there and back"])
-@pytest.mark.parametrize("name", PROGRAMS)
+@pytest.mark.parametrize(
+    ("name", "sensor"),
+    [
+        # Each program under two sensors by default, each sensor with half of the programs.
+        pytest.param(name, sensor, marks=pytest.mark.slow if (row + column) % 2 else ())
+        for row, name in enumerate(PROGRAMS)
+        for column, sensor in enumerate(["white", "turned step", "out of reach", "there and back"])
+    ],
+)
 def test_every_row_keeps_limits_and_pose(run, name, sensor):
     found = run(name, SENSORS.get(sensor) or white())
     assert found.report.ticks + found.report.held_ticks == len(found.q) - 1

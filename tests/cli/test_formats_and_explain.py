@@ -13,7 +13,7 @@ from irlx.diagnostics import CATALOGUE
 
 BAD = (
     "PROGRAM b;\nBEGIN\n  x := 1;\n  OUT_3 := TRUE;\n"
-    "  MOVE LIN POSITION(1, 2, 3) WITH TOLERANCE (0, 0, 0, 0, 0, 9);\nENDPROGRAM\n"
+    "  MOVE LIN POSITION(1, 2, 3) WITH CRITERION mine;\nENDPROGRAM\n"
 )
 
 
@@ -25,7 +25,7 @@ def test_machine_formats_have_stdout_for_themselves(inside, folder):
     assert (done.returncode, done.stderr) == (1, "")
     found = json.loads(done.stdout)
     told = [(one["file"], one["code"]) for one in found]
-    each = ["IRL201", "IRL205", "IRL591"]
+    each = ["IRL201", "IRL205", "IRL363"]
     assert told == [("b.irl", code) for code in each] + [("a.irl", code) for code in each]
     for name in ("sarif", "concise", "github"):
         done = inside("check", "b.irl", "--format", name)
@@ -119,8 +119,8 @@ def test_ignored_warnings_of_the_motion(inside, folder):
 
 
 def test_findings_of_all_stages_come_in_the_order_of_the_text(tmp_path):
-    free = "MOVE LIN POSITION(1, 2, 3) WITH TOLERANCE (0, 0, 0, 0, 0, 9);"
+    one, other = (f"MOVE LIN POSITION(1, 2, 3) WITH CRITERION {name};" for name in ("mine", "yours"))
     (tmp_path / "p.irl").write_text(
-        f"PROGRAM p;\nBEGIN\n  {free}\n  x := 1;\n  {free}\nENDPROGRAM\n", encoding="utf-8"
+        f"PROGRAM p;\nBEGIN\n  {one}\n  x := 1;\n  {other}\nENDPROGRAM\n", encoding="utf-8"
     )
-    assert [finding.code for finding in irlx.check(tmp_path / "p.irl")] == ["IRL591", "IRL201", "IRL591"]
+    assert [finding.code for finding in irlx.check(tmp_path / "p.irl")] == ["IRL363", "IRL201", "IRL363"]

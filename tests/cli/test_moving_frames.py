@@ -311,3 +311,27 @@ def test_poses_that_break_a_constraint_they_imply(written):
     assert [one.code for one in caught.value.diagnostics if one.is_error] == ["IRL441"]
     found = irlx.check("p.irl", motion=True)
     assert [one.code for one in found if one.is_error] == ["IRL441"]
+
+
+def test_tolerances_are_bands_in_the_frame(ran):
+    pose = f"POSE(POSITION(%s), {DOWN})"
+    body = f"""MOVE LIN {pose % "30, 0, 20"} IN FRAME pipe;
+        MOVE LIN {pose % "-30, 0, 20"} IN FRAME pipe WITH TOLERANCE (0, 0, 0, 0, 0, 360);
+        MOVE LIN {pose % "0, 0, 40"} IN FRAME pipe WITH TOLERANCE (0, 0, 5, 10, 10, 360);
+        MOVE LIN POSITION(500, 0, 950) WITH TOLERANCE (0, 0, 0, 0, 0, 360);"""
+    found = ran(body)
+    rotations, positions = seen(ends(found)[:3])
+    assert positions[1] == pytest.approx([-0.03, 0.0, 0.02], abs=1e-9)
+    assert rotations[1][:, 2] == pytest.approx([0.0, 0.0, -1.0], abs=1e-9)
+    assert np.abs(rotations[1] - rotations[0]).max() > 1e-3
+    assert np.abs(positions[2] - [0.0, 0.0, 0.04]).max() <= 0.005 + 1e-9
+
+
+def test_a_band_leaves_room_for_a_constraint_that_the_pose_would_imply(ran):
+    upright = '[[constraint]]\nname = "upright"\nlink = "torch"\naxis = [0, 0, 1]\ndirection = [0, 0, -1]\n'
+    # Told to lean by 5 degrees, it may stand off by 10: the constraint decides.
+    leaning = """POSE(POSITION(500, 0, 950), ORIENTATION(0, 0.70710678, 0.70710678, 0))
+      @ POSE(POSITION(0, 0, 0), ORIENTATION(COS(2.5), SIN(2.5), 0, 0))"""
+    with_room = f"MOVE LIN {leaning} WITH TOLERANCE (0, 0, 0, 10, 10, 0);"
+    found = ran(with_room, cell=CELL + upright)
+    assert found.stream.tool[-1, :3] == pytest.approx([0.5, 0.0, 0.95], abs=1e-9)

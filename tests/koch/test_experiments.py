@@ -161,7 +161,7 @@ def test_6_3_the_limit_holds_at_every_tick_without_slowing(experiment, tick: int
 
 
 @pytest.mark.req("MOT-21")
-@pytest.mark.parametrize("tick", [20, 50])
+@pytest.mark.parametrize("tick", [pytest.param(20, marks=pytest.mark.slow), 50])
 def test_6_3_a_limit_of_60_slows_the_tool_and_the_summary_says_so(tmp_path, experiment, tick: int) -> None:
     text = (PROGRAMS / "square_accel.irl").read_text(encoding="utf-8")
     (tmp_path / "soft.irl").write_text(re.sub(r"\b350\b", "60", text), encoding="utf-8")

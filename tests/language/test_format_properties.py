@@ -50,9 +50,20 @@ def judge(text):
 
 
 @pytest.mark.req("LANG-74")
-@settings(RELAXED, max_examples=100)
+@settings(RELAXED, max_examples=40)
 @given(PROGRAMS)
 def test_random_programs(text):
+    judge_random(text)
+
+
+@pytest.mark.slow
+@settings(RELAXED, max_examples=1000)
+@given(PROGRAMS)
+def test_many_random_programs(text):
+    judge_random(text)
+
+
+def judge_random(text):
     source = source_text("t.irl", text)
     # Where a name that MOVE does not know begins a line, the text is another one than was meant.
     assume(not any(finding.is_error for finding in parse(source).findings))
@@ -68,9 +79,21 @@ def out_of_order(text):
 
 @pytest.mark.req("LANG-74")
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
-@settings(RELAXED, max_examples=8)
+@settings(RELAXED, max_examples=3)
 @given(data=st.data())
 def test_programs_with_other_blanks_and_more_comments(path, data):
+    judge_with_other_blanks(path, data)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
+@settings(RELAXED, max_examples=40)
+@given(data=st.data())
+def test_programs_with_many_other_blanks_and_more_comments(path, data):
+    judge_with_other_blanks(path, data)
+
+
+def judge_with_other_blanks(path, data):
     text = path.read_text(encoding="utf-8")
     words = [str(token) for token in lex(source_text("t.irl", text)).tokens]
     judge(data.draw(spaced(words)))

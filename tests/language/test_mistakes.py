@@ -11,7 +11,7 @@ from irlx.language.source import source_text
 from long_programs import long_program
 from mistakes import MISTAKES
 
-DRAWS = 12
+DRAWS = 5
 MANY_DRAWS = 150
 NEAR = 3
 APART = 20

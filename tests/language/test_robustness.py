@@ -131,7 +131,7 @@ def fuzz(seed, duration):
 @pytest.mark.req("QA-08")
 @pytest.mark.parametrize("seed", range(4))
 def test_damaged_programs_never_raise(seed):
-    fuzz(seed, 1.5)
+    fuzz(seed, 0.5)
 
 
 @pytest.mark.slow

@@ -86,6 +86,7 @@ def test_with_position_limits_no_move_fails_either(seed: int) -> None:
     assert np.max(np.abs(np.diff(rows, axis=0))) / DT <= SPEED
 
 
+@pytest.mark.slow
 @pytest.mark.xfail(
     strict=True, reason="the governor does not see a singular posture that the tool comes near"
 )
@@ -94,6 +95,7 @@ def test_a_return_near_a_singular_posture_keeps_the_governed_rate() -> None:
     assert share_of_governed_rate(triangles(2)[0]) <= 1.0
 
 
+@pytest.mark.slow
 @pytest.mark.xfail(
     strict=True, reason="without an acceleration limit nothing brakes a joint for its position limit"
 )

@@ -36,6 +36,7 @@ from irlx.blocks import (
     ReconfigureBlock,
     SignalBlock,
     SignalKind,
+    ToleranceClause,
     ToolBlock,
     WaitBlock,
     WeightsBlock,
@@ -105,6 +106,7 @@ blocks = st.one_of(
         criteria=st.lists(st.builds(CriterionClause, criteria, origins), max_size=2).map(tuple),
         blend=st.none() | blends,
         frame=frames,
+        tolerance=st.none() | st.builds(ToleranceClause, st.tuples(*[numbers] * 6), origins),
         **common,
     ),
 )

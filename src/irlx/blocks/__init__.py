@@ -38,9 +38,11 @@ from irlx.blocks.questions import (
 from irlx.blocks.reconfigure import ReconfigureBlock
 from irlx.blocks.signal import InputBlock, Port, SignalBlock, SignalKind, WaitBlock
 from irlx.blocks.targets import JointIncrement, JointTarget, PoseIncrement, PoseTarget, Target
+from irlx.blocks.tolerance import FREE_TURN, ToleranceClause
 from irlx.blocks.tool import ToolBlock, WeightsBlock
 
 __all__ = [
+    "FREE_TURN",
     "ArcCourse",
     "AskAvoidingPosture",
     "AskClearance",
@@ -89,6 +91,7 @@ __all__ = [
     "SignalBlock",
     "SignalKind",
     "Target",
+    "ToleranceClause",
     "ToolBlock",
     "WaitBlock",
     "WeightsBlock",

@@ -10,6 +10,7 @@ from irlx.blocks.criterion import CriterionClause
 from irlx.blocks.link_frame import LinkFrame
 from irlx.blocks.options import LimitClause
 from irlx.blocks.targets import JointTarget, Target
+from irlx.blocks.tolerance import ToleranceClause
 
 
 class MoveKind(str, Enum):
@@ -100,8 +101,9 @@ class MoveBlock(Block):
     the next move allows it, and the inner points of its own path.
     `reconfiguration`: posture to be drawn to on the way, the target's pose being kept (of a CIRCLE with a
     posture for its via point: on the way from there); the cyclic option is off for such a move. `criteria`
-    are added for this move alone. In a `frame` that moves with a link all poses count, and the path and the
-    speeds of its law: they are what that frame sees of the tool.
+    are added for this move alone. `tolerance`: bands within which the tool may stand off its programmed pose.
+    In a `frame` that moves with a link all poses count, and the path and the speeds of its law: they are
+    what that frame sees of the tool.
     """
 
     kind: MoveKind
@@ -112,6 +114,7 @@ class MoveBlock(Block):
     reconfiguration: JointTarget | None = None
     criteria: tuple[CriterionClause, ...] = ()
     blend: Blend | None = None
+    tolerance: ToleranceClause | None = None
     frame: LinkFrame | None = None
 
     @property

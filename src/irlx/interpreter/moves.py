@@ -19,17 +19,17 @@ from irlx.blocks import (
     Origin,
     PathCourse,
     Target,
+    ToleranceClause,
 )
 from irlx.interpreter.base import Base
-from irlx.interpreter.compiled import Compiled
+from irlx.interpreter.compiled import Compiled, failing
 from irlx.interpreter.errors import fail
 from irlx.interpreter.frames import base_of, link_frame_of, told_in
 from irlx.interpreter.law import Law, Passing
 from irlx.interpreter.motion_parts import MotionParts, NextId, Wanted
-from irlx.interpreter.parameters import Latched, choice_of, criterion_params, word
-from irlx.interpreter.support import missing_in_move
+from irlx.interpreter.parameters import Latched, choice_of, criterion_params, not_negative, word
 from irlx.interpreter.targets import increment_of, target_of
-from irlx.interpreter.types import POSE, POSITION, REAL, STRING, Array, Type
+from irlx.interpreter.types import INT, POSE, POSITION, REAL, STRING, TOLERANCE, Array, Type
 from irlx.interpreter.values import ArrayValue, RecordValue
 from irlx.language import tree
 
@@ -48,9 +48,6 @@ class Moves(MotionParts):
 
     def add(self, node: tree.Move) -> None:
         """Add the steps of a move. Raises InterpreterError: IRL405 for postures that are not one a point."""
-        missing = missing_in_move(node)
-        if missing is not None:
-            raise fail("IRL590", self._context.source, missing[0].span, what=missing[1])
         law, passing = Law(node, self._expressions), Passing(node, self._expressions)
         wanted, slices = _in_order({"law": law.parts, "passing": passing.parts, **self._further(node)})
         parts = self._expressions.operands(wanted)
@@ -66,6 +63,7 @@ class Moves(MotionParts):
                 "limits": tuple(self._limits(node, at["limits"])),
                 "criteria": tuple(self._criteria(node, at["criteria"])),
                 "frame": frame,
+                "tolerance": self._bands(node, at["tolerance"]),
             }
             return [
                 MoveBlock(
@@ -93,6 +91,11 @@ class Moves(MotionParts):
                 for clause in node.clauses
                 if isinstance(clause, tree.WithCriterion)
                 for part in criterion_params(clause, self._expressions)
+            ],
+            "tolerance": [
+                (clause.bands, partial(self._of_bands, clause.bands))
+                for clause in node.clauses
+                if isinstance(clause, tree.WithTolerance)
             ],
             "postures": [
                 (target, partial(posture, target, self._postures()))
@@ -210,6 +213,33 @@ class Moves(MotionParts):
             LimitClause(LimitKind(clause.kind), self._joint_range(bounds), self._origin(clause))
             for clause, *bounds in pairs
         ]
+
+    def _of_bands(self, node: tree.Expression) -> Compiled:
+        """The bands of TOLERANCE: six values in parentheses, or an array of six numbers."""
+        if isinstance(node, tree.Aggregate):
+            return self._expressions.value(node, TOLERANCE)
+        found = self._expressions.value(node)
+        six = isinstance(found.type, Array) and found.type.size == len(TOLERANCE.fields)
+        if found.type is None or (
+            six and isinstance(found.type, Array) and found.type.element in (REAL, INT)
+        ):
+            return found
+        data = {"expected": "6 values for TOLERANCE", "found": found.type.name}
+        return failing(fail("IRL222", self._context.source, node.span, **data), (found,))
+
+    def _bands(self, node: tree.Move, values: list[Any]) -> ToleranceClause | None:
+        """The clause of the values of its bands, mm and degrees. Raises InterpreterError, IRL505."""
+        clause = next((c for c in node.clauses if isinstance(c, tree.WithTolerance)), None)
+        if clause is None:
+            return None
+        found = []
+        for number, ((name, _), value) in enumerate(zip(TOLERANCE.fields, values[0].values, strict=True)):
+            items = clause.bands.items if isinstance(clause.bands, tree.Aggregate) else ()
+            told = Latched(value, name, items[number] if items else clause.bands)
+            band = not_negative(told, self._context.source)
+            found.append(band * 1e-3 if number < 3 else radians(band))
+        dx, dy, dz, da, db, dc = found
+        return ToleranceClause((dx, dy, dz, da, db, dc), self._origin(clause))
 
     def _criteria(self, node: tree.Move, values: list[Any]) -> list[CriterionClause]:
         found, rest = [], list(values)

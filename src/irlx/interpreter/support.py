@@ -28,25 +28,11 @@ EXECUTED_DECLARATIONS = (
     tree.StandardChannel,
     tree.RobotBinding,
 )
-_CLAUSES = (tree.WithLimit, tree.WithReconfiguration, tree.WithCriterion)
-
-_NAMES: dict[type[tree.Node], str] = {
-    tree.WithTolerance: "WITH TOLERANCE",
-}
-"""Parts that are read only, and what a program calls them."""
 
 
 def part_name(node: tree.Node) -> str:
-    """What a program calls a part: its keywords."""
-    return _NAMES.get(type(node), type(node).__name__)
-
-
-def missing_in_move(move: tree.Move) -> tuple[tree.Node, str] | None:
-    """First part of a MOVE that is not executed, and its name, or None."""
-    for clause in move.clauses:
-        if not isinstance(clause, _CLAUSES):
-            return clause, part_name(clause)
-    return None
+    """What a program calls a part."""
+    return type(node).__name__
 
 
 def unsupported(
@@ -106,12 +92,5 @@ def _unknown_criteria(root: tree.Node, source: SourceText) -> Iterator[Diagnosti
 def _parts(root: tree.Node, declared: frozenset[str]) -> Iterator[tuple[tree.Node, str]]:
     """Parts that are not executed in a text, and their names."""
     for node in tree.walk(root):
-        match node:
-            case tree.Move():
-                missing = missing_in_move(node)
-                if missing is not None:
-                    yield missing
-            case tree.NamedType(name=name) if name.key in LATER_TYPES - declared:
-                yield node, f"the type {name.name}"
-            case _ if type(node) in _NAMES and not isinstance(node, tree.WithTolerance):
-                yield node, part_name(node)
+        if isinstance(node, tree.NamedType) and node.name.key in LATER_TYPES - declared:
+            yield node, f"the type {node.name.name}"

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from math import inf
 
 import numpy as np
-from scipy.optimize import brentq
 
 from irlx.blocks import MotionLaw, Profile
 from irlx.diagnostics import Place, report
@@ -95,6 +94,8 @@ def _with_time(
         governor = "the bounds of this move and the speeds of its neighbours"
         raise MotionError(report("IRL421", stage.place, asked=asked, least=fastest, governor=governor))
     slowest = 0.5 * min(stage.length / time, top)
+    from scipy.optimize import brentq
+
     late(float(brentq(late, slowest, top, xtol=1e-15 * top, rtol=1e-14)))
     return law
 

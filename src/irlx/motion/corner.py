@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from math import pi, sqrt
 
 import numpy as np
-from scipy.optimize import brentq
 
 from irlx.motion.blended_corner import SECTIONS, BlendedCorner, blended_corner
 from irlx.motion.edges import Edge
@@ -102,6 +101,8 @@ def _least_distance(before: Edge, after: Edge, room: float) -> float:
         return room * (1.0 + at_room)
     if excess(most) <= 0.0:
         return LEAST_PASS
+    from scipy.optimize import brentq
+
     return min((1.0 + _ENOUGH) / float(brentq(excess, least, most, rtol=_ENOUGH)), room)
 
 

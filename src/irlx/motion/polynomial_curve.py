@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import PPoly
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PPoly
 
 Array = NDArray[np.float64]
 
@@ -104,6 +107,8 @@ class PolynomialCurve:
 
     @cached_property
     def _curve(self) -> PPoly:
+        from scipy.interpolate import PPoly
+
         return PPoly(self.coefficients, self.breaks)
 
     @cached_property

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from math import sqrt
 
 import numpy as np
-from scipy.optimize import brentq
 
 from irlx.motion.phases import Phases
 
@@ -70,6 +69,8 @@ def _peak(first: float, last: float, way: float, speed: float, acc: float, jerk:
         return speed
     if left(least) <= 0.0:
         return least
+    from scipy.optimize import brentq
+
     found = float(brentq(left, least, speed, xtol=_NEAREST * speed, rtol=_NEAREST))
     return _kept(found, least, lambda peak: left(peak) >= 0.0)
 

@@ -7,7 +7,6 @@ from math import degrees, inf
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 from scipy.spatial.transform import Rotation
 
 from irlx.diagnostics import Place, report
@@ -48,6 +47,8 @@ def spline_path(positions: Array, rotations: Array, place: Place) -> tuple[Curve
     knots = np.concatenate([[0.0], np.cumsum(chords)])
     if not knots[-1] < LONGEST_WAY:
         ticks_of_move(inf, 1.0, place)
+    from scipy.interpolate import CubicSpline
+
     curve = PolynomialCurve(knots, CubicSpline(knots, positions, bc_type="natural").c)
     steps = np.linspace(0.0, 1.0, SECTIONS + 1)[:-1]
     cuts = np.append((knots[:-1, None] + chords[:, None] * steps).ravel(), knots[-1])

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import PPoly
 from scipy.spatial.transform import Rotation
 
 from irlx.motion.hermite import Jet, quintic
 from irlx.motion.rotation_vector import angular_rates, vector_rates
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PPoly
 
 Array = NDArray[np.float64]
 
@@ -80,6 +82,8 @@ class TurnCurve:
 
     @cached_property
     def _curve(self) -> PPoly:
+        from scipy.interpolate import PPoly
+
         return PPoly(self.coefficients, self.breaks)
 
     @cached_property

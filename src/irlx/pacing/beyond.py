@@ -14,9 +14,9 @@ from irlx.motion.plan_chain import Leg, plan_chain
 from irlx.pacing.options import LimitsInForce
 from irlx.pacing.path_moves import end_of_move
 from irlx.pacing.posed import posed, posture_target
-from irlx.pacing.postures import posture_of_pose
 from irlx.pacing.situation import Situation
 from irlx.pacing.switches import check_joint_target
+from irlx.pacing.tolerance import posture_within, start_of
 
 Array = NDArray[np.float64]
 
@@ -40,12 +40,13 @@ def posture_beyond(situation: Situation, move: MoveBlock, in_force: LimitsInForc
         end = np.array(given.values)
         check_joint_target(end, situation.robot, in_force.limits, place)
         return end
-    start = situation.pose
+    start = start_of(situation, move.tolerance)
     told = posed(move, situation.kinematics, start, situation.q)
     rotation, position = end_of_move(told, start, place)
     x, y, z = position.tolist()
     a, b, c, d = Rotation.from_matrix(rotation).as_quat().tolist()
-    return posture_of_pose(PoseTarget((x, y, z), (a, b, c, d)), None, situation, in_force, place)
+    target = PoseTarget((x, y, z), (a, b, c, d))
+    return posture_within(move.tolerance, target, None, situation, in_force, place)
 
 
 def ticks_beyond(situation: Situation, move: MoveBlock, place: Place) -> int:

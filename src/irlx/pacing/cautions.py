@@ -68,14 +68,17 @@ def near_singular(rows: MotionRows, kinematics: Kinematics, place: Place) -> Cau
     path = rows.path
     if path is None:
         return None
-    values = _singular_values(rows.q, path, kinematics)
+    postures = rows.q
+    if rows.freed is not None:
+        postures, kinematics = rows.freed.q[1:], rows.freed.kinematics
+    values = _singular_values(postures, path, kinematics)
     if values.size == 0:
         return None
     shares = values[:, -1] / np.maximum(values[:, 0], np.finfo(float).tiny)
     worst = int(np.argmin(shares))
     if shares[worst] >= NEAR_SINGULAR:
         return None
-    if usual_rank(kinematics, rows.q[worst], path.free) < kinematics.rows:
+    if usual_rank(kinematics, postures[worst], path.free) < kinematics.rows:
         return None
     data: dict[str, Any] = {
         "sigma": f"{values[worst, -1]:.2g}",

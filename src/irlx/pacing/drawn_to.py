@@ -23,6 +23,7 @@ from irlx.pacing.switches import check_joint_target
 from irlx.robot.limits import JointLimits
 from irlx.transform.criteria.combined import Weighted
 from irlx.transform.criteria.keeping_clear import KeepingClear
+from irlx.transform.criteria.some_joints import OfSomeJoints
 
 Array = NDArray[np.float64]
 
@@ -113,9 +114,16 @@ def _added_terms(
     speed, turns = plan.programmed.speed, plan.path.is_pure_turn
     turning = situation.robot.reach * speed * (1.0 if turns else plan.path.turn_rate)
     tool_speed = hypot(0.0 if turns else speed, turning)
-    weights, q = situation.setup.weights, situation.q
-    return added_terms(
-        chosen, TermSetting(situation.kinematics, limits, weights, q, tool_speed), situation.locate
+    freed = situation.freed
+    if freed is None:
+        setting = TermSetting(situation.kinematics, limits, situation.setup.weights, situation.q, tool_speed)
+        return added_terms(chosen, setting, situation.locate)
+    # Criteria are about the robot: its virtual joints have neither masses nor ranges worth centring.
+    own = freed.joints
+    setting = TermSetting(freed.robot, limits.of(own), freed.weights[own], situation.q[own], tool_speed)
+    return tuple(
+        Weighted(OfSomeJoints(entry.term, own), entry.weight)
+        for entry in added_terms(chosen, setting, situation.locate)
     )
 
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from irlx.blocks import MoveBlock, PauseBlock, WaitBlock
 from irlx.pacing.demand import Demand
+from irlx.pacing.freed import Freed
 from irlx.pacing.rows import MotionRows, PathPart
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
@@ -143,9 +144,11 @@ def explain_tick(
     `rows_before` (2, n): the two rows before it, the same twice where it starts at rest; `limits` in force;
     `weights` (n,) of least motion.
     """
+    row = tick - rows.first_tick
+    if rows.freed is not None:
+        return _explain_freed(rows, rows.freed, tick, dt)
     robot = kinematics.description
     names, prismatic = robot.joint_names, tuple(axis.is_prismatic for axis in robot.axes)
-    row = tick - rows.first_tick
     before = np.vstack([rows_before, rows.q])
     step, last_step = before[row + 2] - before[row + 1], before[row + 1] - before[row]
     asked = rows.path.demands if rows.path is not None and not rows.passes_corner(row) else ()
@@ -165,6 +168,15 @@ def explain_tick(
         _criteria(rows, row, demand, before[row + 1], step, weights),
         _problem(rows, row, demand, before[row + 1], bounds, kinematics, dt),
     )
+
+
+def _explain_freed(rows: MotionRows, freed: Freed, tick: int, dt: float) -> TickExplanation:
+    """Explanation of a tick in which virtual joints stand among the robot's own."""
+    active = np.zeros((len(rows), freed.q.shape[1]), dtype=np.int8)
+    active[:, freed.joints] = rows.active
+    wide = replace(rows, q=freed.q[1:], active=active, freed=None)
+    before = np.vstack([freed.q[:1], freed.q[:1]])
+    return explain_tick(wide, before, tick, freed.limits, freed.weights, freed.kinematics, dt)
 
 
 def _problem(

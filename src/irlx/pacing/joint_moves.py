@@ -18,14 +18,15 @@ from irlx.pacing.errors import PacingError
 from irlx.pacing.impossible import explain_broken_row
 from irlx.pacing.motion import Motion
 from irlx.pacing.options import LimitsInForce
-from irlx.pacing.posed import pose_target, posture_target
+from irlx.pacing.posed import Pose, pose_of, pose_target, posture_target
 from irlx.pacing.posture_left import JOINTS_GIVEN, ON_THE_WAY, posture_left
-from irlx.pacing.postures import asked_posture, posture_of_pose
+from irlx.pacing.postures import asked_posture
 from irlx.pacing.row_check import broken_bound
 from irlx.pacing.rows import MotionRows, handed_out, held
 from irlx.pacing.situation import Situation
 from irlx.pacing.snap import SAME_VALUE
 from irlx.pacing.switches import check_joint_target
+from irlx.pacing.tolerance import posture_within
 from irlx.pacing.too_near import check_rows
 from irlx.robot.limits import JointLimits
 
@@ -93,7 +94,7 @@ def _motion(
         situation.notes.add(note)
     motion, dt, place = plan.motion, situation.dt, situation.locate(moves[0].origin)
     if motion.ticks == 0:
-        return Motion((None,), in_force)
+        return Motion((None,), in_force, programmed=_programmed(situation, moves[0]))
     count = situation.setup.resolution.rows_of(motion.ticks)
     q = motion.postures(dt, count)
     _check_rows(situation, q, in_force.limits, dt * motion.ticks / count, place)
@@ -112,7 +113,17 @@ def _motion(
     if plan.legs > 1:
         handed = handed_out(rows, moves[: plan.legs], plan.ends)
     last = plan.ends[-1] - (plan.ends[-2] if plan.legs > 1 else 0.0)
-    return Motion(tuple(handed), in_force, rooms=(0.5 * plan.ends[0], 0.5 * last))
+    rooms = 0.5 * plan.ends[0], 0.5 * last
+    return Motion(tuple(handed), in_force, rooms=rooms, programmed=_programmed(situation, moves[0]))
+
+
+def _programmed(situation: Situation, block: MoveBlock) -> Pose | None:
+    """The pose of a PTP WITH TOLERANCE, off which the tool may stand."""
+    if block.tolerance is None:
+        return None
+    situation = situation.in_frame(block.frame, situation.locate(block.origin))
+    target = pose_target(block.target, situation.pose)
+    return None if target is None else pose_of(target, situation.pose)
 
 
 def _rows(situation: Situation, block: MoveBlock, q: Array, s: Array) -> MotionRows:
@@ -150,4 +161,4 @@ def _end_posture(situation: Situation, block: MoveBlock, in_force: LimitsInForce
         near = asked_posture(block.reconfiguration, situation, in_force, place)
     pose = pose_target(block.target, situation.pose)
     assert pose is not None
-    return posture_of_pose(pose, near, situation, in_force, place)
+    return posture_within(block.tolerance, pose, near, situation, in_force, place)

@@ -94,7 +94,7 @@ def _apart(first: MoveBlock, second: MoveBlock) -> str:
     if first.frame != second.frame:
         return "the two moves lead the tool in different frames"
     for move in (first, second):
-        if move.limits or move.criteria:
+        if move.limits or move.criteria or move.tolerance is not None:
             return "a WITH clause holds for one of the two moves alone"
         if move.kind is MoveKind.PTP:
             continue

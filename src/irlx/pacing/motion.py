@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from irlx.blocks import MoveBlock
 from irlx.pacing.options import LimitsInForce
+from irlx.pacing.posed import Pose
 from irlx.pacing.rows import MotionRows
 
 
@@ -15,10 +16,12 @@ class Motion:
 
     `rest` is what is left of the last of these moves where the motion stops on its way, None where it does
     not. `rooms`: how far a corner to another kind of move may reach into the first and the last of the moves,
-    in the unit of `MotionRows.s`: half of them, of a SPLINE half of the way to its next point.
+    in the unit of `MotionRows.s`: half of them, of a SPLINE half of the way to its next point. `programmed`:
+    where the path of a move WITH TOLERANCE ends, off which the tool may stand.
     """
 
     rows: tuple[MotionRows | None, ...]
     in_force: LimitsInForce
     rest: MoveBlock | None = None
     rooms: tuple[float, float] = (0.0, 0.0)
+    programmed: Pose | None = None

@@ -24,6 +24,7 @@ from irlx.blocks import (
     CriterionBlock,
     FreezeBlock,
     LimitSwitchBlock,
+    LinkFrame,
     MachineQuestion,
     MoveBlock,
     MoveKind,
@@ -43,6 +44,7 @@ from irlx.pacing.beyond import posture_beyond, ticks_beyond
 from irlx.pacing.carried import Carried, are_of_one_kind, crossed, passes
 from irlx.pacing.clearance_answers import Clearances, pairs_of
 from irlx.pacing.executed import Executed
+from irlx.pacing.frames import seen_from
 from irlx.pacing.inputs import answer_of_inputs
 from irlx.pacing.joint_moves import move_joints
 from irlx.pacing.kept_clear import kept_clear
@@ -52,6 +54,7 @@ from irlx.pacing.nearest_rows import nearest_rows
 from irlx.pacing.notes import Notes
 from irlx.pacing.options import LimitsInForce, Options, SwitchBlock
 from irlx.pacing.path_moves import move_along_path
+from irlx.pacing.posed import Pose
 from irlx.pacing.posture_left import posture_left, why_left
 from irlx.pacing.postures import asked_posture, posture_of_pose
 from irlx.pacing.reconfigure import reconfigured
@@ -59,7 +62,8 @@ from irlx.pacing.refitting import refitted
 from irlx.pacing.rows import MotionRows
 from irlx.pacing.situation import PacingSetup, Situation
 from irlx.pacing.snap import snapped
-from irlx.pacing.switches import check_freeze, check_inside, check_limit
+from irlx.pacing.spare import check_spare
+from irlx.pacing.switches import check_frozen, check_inside, check_limit
 from irlx.pacing.too_near import check_rows, passed_by, standing
 from irlx.pacing.waiting import waited
 from irlx.transform.clearance import Clearance
@@ -90,6 +94,9 @@ class Pacer:
         self._clearance = kept_clear(setup.kinematics, setup.scene, self.options)
         self._rest: MoveBlock | None = None
         self._constraints = setup.kinematics.constraints
+        self._programmed_in: LinkFrame | None = None
+        self._programmed: Pose | None = None
+        """Where the path of the last move ended in its frame, if it was one WITH TOLERANCE."""
 
     def _new_solver(self) -> TickSolver:
         """What solves the ticks: roughly in a dry run."""
@@ -148,6 +155,8 @@ class Pacer:
             self.warnings,
             self.notes,
             self._clear_from_now,
+            self._programmed,
+            self._programmed_in,
         )
 
     @property
@@ -249,7 +258,7 @@ class Pacer:
         situation = self._situation.in_frame(move.frame, place)
         end = posture_beyond(situation, move, situation.in_force(move.limits), place)
         self.tick += ticks_beyond(situation, move, place)
-        self.q = end
+        self.q, self._programmed = end, None
 
     def execute(self, block: Block) -> MotionRows | None:
         """Execute one block; returns the rows of a move (None for a switch or a move of no length).
@@ -266,6 +275,23 @@ class Pacer:
         place = self.locate(block.origin)
         if isinstance(block, WaitBlock | PauseBlock):
             return self._wait(block, place)
+        self._check_switch(block, place)
+        if isinstance(block, ToolBlock | WeightsBlock):
+            self._setup = refitted(self._setup, block, place)
+            self._solver = self._new_solver()
+        if isinstance(block, ToolBlock):
+            self._programmed = None
+        if isinstance(block, SwitchBlock):
+            self.options = self.options.after(block, self.q)
+        if isinstance(block, ToolBlock | ObstacleBlock):
+            self._clearance = kept_clear(self._setup.kinematics, self._setup.scene, self.options)
+        if isinstance(block, ObstacleBlock) and block.active:
+            names = [obstacle.name for obstacle in self._setup.scene.members(block.name)]
+            self.warnings += standing(self._clear_from_now, self.q, names, place)
+        return None
+
+    def _check_switch(self, block: Block, place: Place) -> None:
+        """Raise PacingError for a switch that the robot cannot have; warns of what it has otherwise."""
         if isinstance(block, LimitSwitchBlock):
             self.warnings += check_limit(block, self._robot, self.setup.limits, self.q, place)
         if isinstance(block, FreezeBlock):
@@ -276,28 +302,21 @@ class Pacer:
             check_criterion(block.choice, self._robot, place)
         if isinstance(block, ObstacleBlock):
             pairs_of(block.name, self.setup.kinematics, self.setup.scene, place)
-        if isinstance(block, ToolBlock | WeightsBlock):
-            self._setup = refitted(self._setup, block, place)
-            self._solver = self._new_solver()
-        if isinstance(block, SwitchBlock):
-            self.options = self.options.after(block, self.q)
-        if isinstance(block, ToolBlock | ObstacleBlock):
-            self._clearance = kept_clear(self._setup.kinematics, self._setup.scene, self.options)
-        if isinstance(block, ObstacleBlock) and block.active:
-            names = [obstacle.name for obstacle in self._setup.scene.members(block.name)]
-            self.warnings += standing(self._clear_from_now, self.q, names, place)
-        return None
 
     def _freeze(self, block: FreezeBlock, place: Place) -> None:
-        """From now on ticks meet only what the other joints can break. Raises as `check_freeze` does."""
-        known = [number - 1 for number in block.joints if 1 <= number <= self.q.size]
+        """From now on ticks meet only what the other joints can break.
+
+        Raises PacingError: IRL346 for a joint that the robot does not have, IRL347 for too many.
+        """
+        check_frozen(block, self._robot, place)
         free = np.ones(self.q.size, dtype=bool)
-        free[known] = False
+        free[[number - 1 for number in block.joints]] = False
         kinematics = self.setup.kinematics
         constraints = moved_constraints(self._constraints, self._robot, self.q, free)
         if constraints != kinematics.constraints:
             kinematics = kinematics.constrained(constraints)
-        check_freeze(block, self._robot, kinematics.rows, place)
+        if not self.setup.may_free:
+            check_spare(self.options.after(block, self.q), kinematics.of_pose, None, self.locate)
         if kinematics is not self.setup.kinematics:
             self._setup = replace(self._setup, kinematics=kinematics)
             self._solver = self._new_solver()
@@ -315,8 +334,13 @@ class Pacer:
         # A clause may have let a joint out of the switch that holds again now.
         check_inside(self.q, self._robot, in_force.limits, place)
         if block.kind is MoveKind.PTP:
-            return move_joints(situation, moves, in_force)
-        return move_along_path(situation, moves, in_force)
+            motion = move_joints(situation, moves, in_force)
+        else:
+            kinematics = seen_from(self.setup.kinematics, block.frame, place)
+            check_spare(situation.options, kinematics, block.tolerance, self.locate)
+            motion = move_along_path(situation, moves, in_force)
+        self._programmed, self._programmed_in = motion.programmed, block.frame
+        return motion
 
     def _check_links(self, place: Place) -> None:
         """Before the first motion: whether the robot stands clear of itself."""
@@ -363,6 +387,7 @@ class Pacer:
     def _reconfigure(self, block: ReconfigureBlock) -> MotionRows | None:
         place = self.locate(block.origin)
         situation = self._situation.in_frame(block.frame, place)
+        check_spare(situation.options, situation.kinematics, None, self.locate)
         in_force = situation.in_force()
         check_inside(self.q, self._robot, in_force.limits, place)
         konf = asked_posture(block.target, situation, in_force, place)

@@ -27,6 +27,7 @@ from irlx.pacing.posed import Pose, end_pose, posed
 from irlx.pacing.posture_term import PostureTerm
 from irlx.pacing.rows import MotionRows, PathPart, handed_out, held
 from irlx.pacing.situation import Situation
+from irlx.pacing.tolerance import Widened, narrowed, start_of, widened
 from irlx.promises import PATH_ORIENTATION, PATH_POSITION
 from irlx.robot.task import pose_errors
 
@@ -44,21 +45,22 @@ def move_along_path(situation: Situation, moves: Sequence[MoveBlock], in_force: 
     """
     situation = situation.in_frame(moves[0].frame, situation.locate(moves[0].origin))
     check_postures(situation, moves[0], in_force)
-    legs = _legs(situation, moves)
-    plan = plan_chain(legs, *situation.pose, situation.dt)
+    start = start_of(situation, moves[0].tolerance)
+    legs = _legs(situation, moves, start)
+    plan = plan_chain(legs, *start, situation.dt)
     if len(plan.ends) > 1:
         try:
             return _motion(situation, moves, legs, plan, in_force)
         except (MotionError, PacingError):
             why = "joined to the next one it cannot be done"
             situation.notes.add(lost_blend(legs[0].place, why, legs[1].place))
-            plan = plan_chain(legs[:1], *situation.pose, situation.dt)
+            plan = plan_chain(legs[:1], *start, situation.dt)
     return _motion(situation, moves, legs, plan, in_force)
 
 
-def _legs(situation: Situation, moves: Sequence[MoveBlock]) -> list[Leg]:
-    """Moves as motions of the tool, each from where the one before was to end."""
-    start, legs = situation.pose, []
+def _legs(situation: Situation, moves: Sequence[MoveBlock], start: Pose) -> list[Leg]:
+    """Moves as motions of the tool: the first from `start`, others from where the one before was to end."""
+    legs = []
     for move in moves:
         told = posed(move, situation.kinematics, start, situation.q)
         check_targets(told, situation.kinematics, situation.q, situation.locate(move.origin))
@@ -89,9 +91,28 @@ def _motion(
     drawn = postures_asked(situation, block, plan, in_force, place)
     if plan.ticks == 0:
         warn_of_posture_left(situation, drawn, situation.q, block, place)
-        return Motion((None,), in_force, rest)
+        return Motion((None,), in_force, rest, programmed=_programmed(block, plan))
+    start = start_of(situation, block.tolerance)
+    way = start, (plan.path.end_rotation, plan.path.end_position)
+    rows = _paced(widened(situation, in_force, drawn, block.tolerance, way), block, plan, place)
+    warn_of_posture_left(situation, drawn, rows.q[-1], block, place)
+    touched = len(plan.ends)
+    handed: list[MotionRows | None] = [rows]
+    if touched > 1:
+        handed = handed_out(rows, moves[:touched], plan.ends)
+    return Motion(tuple(handed), in_force, rest, plan.rooms, _programmed(block, plan))
+
+
+def _programmed(block: MoveBlock, plan: PlannedChain) -> Pose | None:
+    """Where the path of a motion ends, if the tool may stand off it."""
+    return None if block.tolerance is None else (plan.path.end_rotation, plan.path.end_position)
+
+
+def _paced(found: Widened, block: MoveBlock, plan: PlannedChain, place: Place) -> MotionRows:
+    """Rows of the motion of a plan."""
+    situation, in_force = found.situation, found.in_force
     model = situation.model(in_force)
-    term = term_of(situation, block, plan, model, drawn, in_force.limits)
+    term = term_of(situation, block, plan, model, found.asked, in_force.limits)
     paced = pace_path(_path_motion(situation, plan, term, place), model, situation.solver)
     if isinstance(paced, Failure):
         told, clear = in_force.told, situation.clearance
@@ -99,13 +120,7 @@ def _motion(
         goal = goal_shortfall(around, plan.path.end_rotation, plan.path.end_position, situation.q)
         raise PacingError(explain_failure(paced, around, plan, situation.tick + 1, goal, place))
     check_implied(paced.q, situation.kinematics, place)
-    warn_of_posture_left(situation, drawn, paced.q[-1], block, place)
-    rows = _rows(situation, block, plan, paced)
-    touched = len(plan.ends)
-    handed: list[MotionRows | None] = [rows]
-    if touched > 1:
-        handed = handed_out(rows, moves[:touched], plan.ends)
-    return Motion(tuple(handed), in_force, rest, plan.rooms)
+    return narrowed(_rows(situation, block, plan, paced), found.freed)
 
 
 def _rest(block: MoveBlock, plan: PlannedChain) -> MoveBlock:

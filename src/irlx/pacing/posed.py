@@ -27,7 +27,7 @@ def posed(block: MoveBlock, kinematics: Kinematics, start: Pose, q: Array) -> Mo
         for target in block.targets:
             pose = _as_pose(target, kinematics, last, q)
             points.append(pose)
-            last = _pose_of(pose, last)
+            last = pose_of(pose, last)
         course = replace(block.path, points=tuple(points[:-1]))
         return replace(block, target=points[-1], course=course)
     target = _as_pose(block.target, kinematics, start, q)
@@ -78,11 +78,12 @@ def end_pose(move: MoveBlock, start: Pose) -> Pose:
     for target in move.targets:
         if not isinstance(target, PoseTarget):
             raise TypeError("the targets of the move are not poses yet")
-        last = _pose_of(target, last if move.path is not None else start)
+        last = pose_of(target, last if move.path is not None else start)
     return last
 
 
-def _pose_of(target: PoseTarget, before: Pose) -> Pose:
+def pose_of(target: PoseTarget, before: Pose) -> Pose:
+    """Rotation and position of a target; one without orientation keeps that of the pose before."""
     rotation = before[0]
     if target.orientation is not None:
         rotation = np.asarray(Rotation.from_quat(target.orientation).as_matrix())

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
 
 from irlx.motion.time_law import TimeLaw
 from irlx.pacing.governed_return import governed_reference
@@ -73,6 +72,8 @@ class Asked:
             way = self.end - start
             return lambda share: np.asarray(start + share * way)
         shares, postures = zip(*self.on_the_way, strict=True)
+        from scipy.interpolate import PchipInterpolator
+
         curve = PchipInterpolator([0.0, *shares, 1.0], np.array([start, *postures, self.end]))
         return lambda share: np.asarray(curve(share))
 

@@ -10,14 +10,17 @@ the pose is only a share of the goal's; it has the same best posture.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import BSpline, make_interp_spline
 
 from irlx.pacing.slowdown.model import Model
 from irlx.transform.posture_flow import FlowEnd, PostureFlow, posture_flow
 from irlx.transform.qp.solver import QpSolver
+
+if TYPE_CHECKING:
+    from scipy.interpolate import BSpline
 
 Array = NDArray[np.float64]
 
@@ -52,6 +55,8 @@ class ReturnWay:
 
 def through(goal: Array, postures: Array, references: Array, whole: bool = True) -> ReturnWay:
     """The way through postures (K, n) with their references (K, n), K >= 2; p goes by the way's length."""
+    from scipy.interpolate import make_interp_spline
+
     length = np.cumsum(np.linalg.norm(np.diff(postures, axis=0), axis=1))
     even = np.linspace(0.0, 1.0, len(postures))
     knots = np.append(0.0, length / length[-1]) if np.all(np.diff(length, prepend=0.0) > 0.0) else even

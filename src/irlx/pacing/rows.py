@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from irlx.blocks import MoveBlock, PauseBlock, ReconfigureBlock, WaitBlock
 from irlx.motion.time_law import TimeLaw
 from irlx.pacing.demand import Demand
+from irlx.pacing.freed import Freed
 from irlx.pacing.nearest_rows import NearestRows
 from irlx.pacing.posture_term import PostureTerm
 from irlx.pacing.slowing import Slowing
@@ -58,7 +59,8 @@ class MotionRows:
     rows of a dry run stand for, 0 where each is a tick;
     `limits` in force, None for the robot's own; `path`, None where no path was asked for; `nearest` what
     comes nearest where something is kept clear. `corner_rows` so many of the first and of the last rows pass
-    a corner between joint space and a path (`Crossing`): they lie on no path.
+    a corner between joint space and a path (`Crossing`): they lie on no path. `freed`: the motion had virtual
+    joints, as the postures of its `path` still have.
     """
 
     block: MoveBlock | ReconfigureBlock | WaitBlock | PauseBlock
@@ -78,6 +80,7 @@ class MotionRows:
     span: int = 0
     nearest: NearestRows | None = None
     corner_rows: tuple[int, int] = (0, 0)
+    freed: Freed | None = None
 
     def __len__(self) -> int:
         return int(self.q.shape[0])

@@ -14,6 +14,7 @@ from irlx.diagnostics import Diagnostic, Place
 from irlx.pacing.correction.share import planned_limits
 from irlx.pacing.demand import DemandModifier
 from irlx.pacing.frames import seen_from
+from irlx.pacing.freed import Freed
 from irlx.pacing.inputs import Inputs
 from irlx.pacing.notes import Notes
 from irlx.pacing.options import LimitsInForce, Options, limits_in_force
@@ -36,7 +37,8 @@ class PacingSetup:
 
     A move may take `max_slow` times as long as programmed, and a tick; `inputs` are what the world says;
     `resolution` tells how finely motions are worked out; motions are planned with `planned_share`
-    of each speed and acceleration limit; `scene` is what stands around.
+    of each speed and acceleration limit; `scene` is what stands around;
+    `may_free`: moves to come may be WITH TOLERANCE.
     """
 
     kinematics: Kinematics
@@ -50,6 +52,7 @@ class PacingSetup:
     resolution: Resolution = EVERY_TICK
     planned_share: float = 1.0
     scene: Scene = field(default_factory=Scene)
+    may_free: bool = False
 
 
 @dataclass(frozen=True)
@@ -57,7 +60,8 @@ class Situation:
     """The robot at rest in posture `q` (n,) at a tick, the options in force, and what solves its ticks.
 
     `warnings` and `notes` collect what is found on the way, also before an error; `clearance` is what is kept
-    clear.
+    clear. `programmed`: where the path of a move WITH TOLERANCE ended, rotation (3, 3) and position (3,) m,
+    while the tool stands off it; `freed`: the robot where virtual joints stand among its own.
     """
 
     setup: PacingSetup
@@ -70,6 +74,9 @@ class Situation:
     warnings: list[Diagnostic]
     notes: Notes
     clearance: Clearance | None = None
+    programmed: tuple[Array, Array] | None = None
+    programmed_in: LinkFrame | None = None
+    freed: Freed | None = None
 
     @property
     def kinematics(self) -> Kinematics:
@@ -102,10 +109,12 @@ class Situation:
         Raises PacingError: IRL515 where the robot has no such link.
         """
         kinematics = seen_from(self.kinematics, frame, place)
-        if kinematics is self.kinematics:
+        programmed = self.programmed if self.programmed_in == frame else None
+        if kinematics is self.kinematics and programmed is self.programmed:
             return self
         setup = replace(self.setup, kinematics=kinematics)
-        return replace(self, setup=setup, solver=type(self.solver)(kinematics, self.qp))
+        solver = type(self.solver)(kinematics, self.qp)
+        return replace(self, setup=setup, solver=solver, programmed=programmed)
 
     def in_force(self, clauses: Iterable[LimitClause] = ()) -> LimitsInForce:
         """Joint limits of a motion with its own clauses."""

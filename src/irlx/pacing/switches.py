@@ -99,18 +99,12 @@ def _wider(
     return [report("IRL341", place, word=LIMIT_WORDS[kind], joints=joints)]
 
 
-def check_freeze(block: FreezeBlock, robot: RobotDescription, rows: int, place: Place) -> None:
-    """Raise PacingError: IRL346 for a joint the robot does not have, IRL347 for too many joints.
-
-    `rows`: equations that every tick has to meet, those of the tool pose and of constraints.
-    """
+def check_frozen(block: FreezeBlock, robot: RobotDescription, place: Place) -> None:
+    """Raise PacingError, IRL346, for a joint the robot does not have."""
     joints = len(robot.axes)
     unknown = [number for number in block.joints if not 1 <= number <= joints]
     if unknown:
         raise PacingError(report("IRL346", place, number=unknown[0], joints=joints))
-    frozen, spare = len(set(block.joints)), joints - rows
-    if frozen > spare:
-        raise PacingError(report("IRL347", place, frozen=frozen, joints=joints, spare=spare, rows=rows))
 
 
 def check_joint_target(q: Array, robot: RobotDescription, limits: JointLimits, place: Place) -> None:

@@ -95,7 +95,7 @@ class Kinematics:
         """`implied` are conditions that are no rows, because the pose of the tool keeps or breaks them."""
         self.implied = tuple(implied)
         self.description = description
-        self._tool = pin.SE3.Identity() if tool is None else tool
+        self.tool = pin.SE3.Identity() if tool is None else tool
         self.constraints = tuple(constraints)
         self.task = Task(description.coordinates)
         self.model = pin.Model()
@@ -119,7 +119,7 @@ class Kinematics:
 
     def constrained(self, constraints: Sequence[Constraint]) -> Kinematics:
         """The same robot with conditions between its joints."""
-        return Kinematics(self.description, constraints, self._tool)
+        return Kinematics(self.description, constraints, self.tool)
 
     def with_tool(
         self, position: tuple[float, float, float], orientation: tuple[float, float, float, float]
@@ -132,6 +132,11 @@ class Kinematics:
         turn = pin.Quaternion(w, x, y, z).normalized().toRotationMatrix()
         return Kinematics(self.description, self.constraints, pin.SE3(turn, np.array(position)))
 
+    @property
+    def frame(self) -> LinkFrame | None:
+        """The frame that moves with a link in which poses of the tool are told, None for the world."""
+        return None
+
     @cached_property
     def of_pose(self) -> Kinematics:
         """The same robot for motions that demand poses: constraints that the pose keeps or breaks by itself
@@ -140,7 +145,7 @@ class Kinematics:
         if not implied:
             return self
         kept = [item for item in self.constraints if item not in implied]
-        return Kinematics(self.description, kept, self._tool, implied)
+        return Kinematics(self.description, kept, self.tool, implied)
 
     @property
     def world(self) -> Kinematics:
@@ -169,7 +174,7 @@ class Kinematics:
             with suppress(RuntimeError, ValueError):
                 self.model.appendBodyToJoint(parent, _inertia(inertial), in_parent)
         if link == self.description.tip:
-            frame = pin.Frame(link, parent, 0, in_parent * self._tool, pin.FrameType.OP_FRAME)
+            frame = pin.Frame(link, parent, 0, in_parent * self.tool, pin.FrameType.OP_FRAME)
             self._tip_frame = self.model.addFrame(frame)
         for joint in self._children.get(link, []):
             origin = in_parent * placement(joint.xyz, joint.rpy)

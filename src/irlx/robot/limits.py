@@ -35,8 +35,8 @@ class JointLimits:
         """Same limits with the pair of `kind` ('position', 'speed', 'acceleration') replaced."""
         return replace(self, **{f"{kind}_lower": lower, f"{kind}_upper": upper})
 
-    def of(self, joints: NDArray[np.bool_]) -> JointLimits:
-        """Limits of some of the joints, chosen by a mask (n,)."""
+    def of(self, joints: NDArray[np.bool_] | NDArray[np.int64]) -> JointLimits:
+        """Limits of some of the joints, chosen by a mask (n,) or by their numbers from 0."""
         return JointLimits(**{name: getattr(self, name)[joints] for name in self.__dataclass_fields__})
 
     def into_positions(self, q: Array) -> Array:

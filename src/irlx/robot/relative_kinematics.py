@@ -26,9 +26,9 @@ class RelativeKinematics(Kinematics):
 
     def __init__(self, world: Kinematics, frame: LinkFrame) -> None:
         """Raises KeyError where the robot has no such link."""
-        super().__init__(world.description, world.constraints, world._tool)
+        super().__init__(world.description, world.constraints, world.tool)
         self._world = world
-        self.frame = frame
+        self._named = frame
         parent, in_parent = self.body_of(frame.link)
         x, y, z, w = frame.orientation
         turn = pin.Quaternion(w, x, y, z).normalized().toRotationMatrix()
@@ -39,6 +39,11 @@ class RelativeKinematics(Kinematics):
         self.data = self.model.createData()
         reach = self.description.reach + self.description.reach_to(frame.link)
         self.row_scale[: self.task.linear] = 1.0 / reach
+
+    @property
+    def frame(self) -> LinkFrame:
+        """The frame F."""
+        return self._named
 
     @cached_property
     def of_pose(self) -> Kinematics:

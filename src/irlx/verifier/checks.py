@@ -62,6 +62,7 @@ CHECKS = (
     "goal orientation",
     "path position",
     "path orientation",
+    "tolerance bands",
     "path progress",
     "programmed speed",
     "programmed acceleration",

@@ -18,10 +18,11 @@ from irlx.blocks import (
     SignalBlock,
     Target,
 )
-from irlx.promises import JOINT_LINE, PATH_ORIENTATION, PATH_POSITION
+from irlx.promises import JOINT_LINE, PATH_ORIENTATION, PATH_POSITION, TOLERANCE_BAND
 from irlx.robot.description import RobotDescription
 from irlx.streams.joint_stream import Floats
 from irlx.verifier.frames import FramesInForce
+from irlx.verifier.geometry.allowance import EXACT, Allowance
 from irlx.verifier.geometry.arcs import arc_shape
 from irlx.verifier.geometry.forward import forward
 from irlx.verifier.geometry.rotations import angle_between, from_quaternion
@@ -141,11 +142,36 @@ def demands_of(outline: Outline, moves: list[MoveRows], placer: Placer) -> list[
     for move in moves:
         follows = bool(found) and found[-1].passes
         start = found[-1].end if follows else ends.place(move.start, move.block.id)
+        if found:
+            start = _goes_on(found[-1], move, start, placer.tools)
         targets = placer.all_of(move, start)
         end = placer.end(move, start, targets)
         passes = move.block.id in joinable and not _stands(outline, move, end, ends)
         found.append(Demand(move, start, targets, end, passes, follows))
     return _crossing(found)
+
+
+def allowance_of(block: MoveBlock) -> Allowance:
+    """How far the tool may stand off the pose that a move asks for."""
+    return EXACT if block.tolerance is None else Allowance(block.tolerance.bands)
+
+
+def _goes_on(before: Demand, move: MoveRows, start: Place, tools: ToolsInForce) -> Place:
+    """Where the path of a move starts: WITH TOLERANCE where that of the move before WITH TOLERANCE ended,
+    with the same tool and if that stands within the bands about it, else where the tool is."""
+    asked, end, here = allowance_of(move.block), before.end.pose, start.pose
+    if asked is EXACT or before.move.block.tolerance is None or end is None or here is None:
+        return start
+    if tools.number(before.move.block.id) != tools.number(move.block.id):
+        return start
+    return Place(end, start.posture) if _within(asked, end, here) else start
+
+
+def _within(allowance: Allowance, asked: Pose, reached: Pose) -> bool:
+    """Whether a pose is as far off another one as it may be, to rounding."""
+    left = allowance.shifted_off((asked[1].T @ (reached[0] - asked[0]))[None])
+    near = float(np.linalg.norm(left)) <= TOLERANCE_BAND
+    return near and float(allowance.turned_off(reached[1][None], asked[1][None])[0]) <= TOLERANCE_BAND
 
 
 def _crossing(demands: list[Demand]) -> list[Demand]:
@@ -201,6 +227,8 @@ def _joinable(outline: Outline) -> frozenset[int]:
         if not isinstance(block, MoveBlock) or not isinstance(following, MoveBlock) or block.blend is None:
             continue
         if block.frame != following.frame:
+            continue
+        if block.tolerance is not None or following.tolerance is not None:
             continue
         alike = (block.kind is MoveKind.PTP) is (following.kind is MoveKind.PTP)
         if alike or not any(_needs_stop(move) for move in (block, following)):

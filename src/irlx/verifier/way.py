@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from irlx.blocks import ArcCourse, MoveKind, Profile
-from irlx.verifier.demands import Place
+from irlx.verifier.demands import Place, allowance_of
 from irlx.verifier.evidence import Evidence
 from irlx.verifier.geometry.arcs import ArcWay, arc_shape
 from irlx.verifier.geometry.paths import LineWay
@@ -78,7 +78,7 @@ def course_of(evidence: Evidence, move: MoveRows, start: Pose) -> Course:
         return Course(move, None, target)
     course = move.block.arc
     if course is None:
-        return Course(move, LineWay(start, target), target)
+        return Course(move, LineWay(start, target, allowance_of(move.block)), target)
     return _arc(evidence, move, course, (start, poses[0], target))
 
 
@@ -90,7 +90,7 @@ def _arc(evidence: Evidence, move: MoveRows, course: ArcCourse, poses: tuple[Pos
     goal = target if course.angle is None else (shape.end, target[1])
     found = Course(move, None, goal, shape.flatness)
     most_step = found.speed * shape.flatness * evidence.outline.header.dt
-    way = ArcWay(shape, course, (start[1], via[1], goal[1]), most_step)
+    way = ArcWay(shape, course, (start[1], via[1], goal[1]), most_step, allowance_of(move.block))
     return Course(move, way, goal, shape.flatness)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from irlx.language import tree
 from irlx.language.builtins import MOVE_PARAMETERS
 from irlx.language.checking.context import Settled, Typed
@@ -14,9 +16,9 @@ from irlx.language.types import (
     POSITION,
     REAL,
     STRING,
+    TOLERANCE,
     UNKNOWN,
     Array,
-    Record,
     Type,
     same_type,
 )
@@ -38,7 +40,6 @@ LIMIT_TYPES = {
 }
 _FIXED_JOINTS = 6
 """A robot with more joints has many postures near each other for one pose."""
-_TOLERANCE = Record("TOLERANCE", tuple((name, REAL) for name in ("dx", "dy", "dz", "da", "db", "dc")))
 
 
 class Motion(TypeForms):
@@ -154,7 +155,11 @@ class Motion(TypeForms):
 
     def _tolerance(self, bands: tree.Expression) -> None:
         if isinstance(bands, tree.Aggregate):
-            self.fitted(bands, _TOLERANCE)
+            self.fitted(bands, TOLERANCE)
+            for (name, _), item in zip(TOLERANCE.fields, bands.items, strict=False):
+                value = self.trial(partial(self.typed, item)).typed.value
+                if isinstance(value, int | float) and not value >= 0:
+                    self.add("IRL505", item, param=name, expected="0 or more", value=f"{value:g}")
             return
         found = self.typed(bands).type
         six = isinstance(found, Array) and found.size in (0, 6)

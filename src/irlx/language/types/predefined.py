@@ -24,6 +24,7 @@ def _reals(name: str, *fields: str) -> Record:
 
 
 POSITION = _reals("POSITION", "X", "Y", "Z")
+TOLERANCE = _reals("TOLERANCE", "dx", "dy", "dz", "da", "db", "dc")
 ORIENTATION = _reals("ORIENTATION", "Q1", "Q2", "Q3", "Q4")
 POSE = Record("POSE", (("POS", POSITION), ("ORI", ORIENTATION)))
 

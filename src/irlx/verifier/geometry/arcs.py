@@ -8,6 +8,7 @@ import numpy as np
 
 from irlx.blocks import ArcCourse
 from irlx.streams.joint_stream import Floats
+from irlx.verifier.geometry.allowance import EXACT, Allowance
 from irlx.verifier.geometry.paths import LineWay, PathDeviation, Turn
 
 LEAST_HEIGHT = 1e-7
@@ -87,7 +88,8 @@ class ArcWay:
     """A CIRCLE's way along its arc; rows are given to it in order.
 
     `rotations` are those at start, via and end, (3, 3); `most_step` is the largest angle, rad, that the
-    program's speed allows between rows: it tells in which round of a circle a row lies.
+    program's speed allows between rows: it tells in which round of a circle a row lies. `allowance`:
+    turns that the tool may stand off by.
     """
 
     def __init__(
@@ -96,6 +98,7 @@ class ArcWay:
         course: ArcCourse,
         rotations: tuple[Floats, Floats, Floats],
         most_step: float,
+        allowance: Allowance = EXACT,
     ) -> None:
         start, via, goal = rotations
         self._shape = shape
@@ -104,9 +107,10 @@ class ArcWay:
         # So short a way is its own chord, and too short to take the share of a turn from.
         self._chord: LineWay | None = None
         if shape.travel < SHORT_WAY * shape.flatness:
-            self._chord = LineWay((shape.start, start), (shape.end, goal))
+            self._chord = LineWay((shape.start, start), (shape.end, goal), allowance)
         through = course.turns_through_via
-        self._turns = [Turn(start, via), Turn(via, goal)] if through else [Turn(start, goal)]
+        pairs = [(start, via), (via, goal)] if through else [(start, goal)]
+        self._turns = [Turn(*pair, allowance) for pair in pairs]
 
     @property
     def length(self) -> float:
@@ -128,6 +132,35 @@ class ArcWay:
         else:
             travel, off_turn = float(inside[-1]), np.zeros(len(inside))
         return PathDeviation(off_circle, off_turn, inside / shape.flatness, travel / shape.flatness, False)
+
+    @property
+    def reach(self) -> float:
+        """Length of the way of the position, m."""
+        return self.length
+
+    def nearest(self, positions: Floats) -> Floats:
+        """Way (R,) m to the points nearest to the next positions (R, 3)."""
+        if self._chord is not None:
+            return self._chord.nearest(positions)
+        before = self._raw, self._angle
+        angles = np.clip(self._rounds(self._shape.angles(positions)), 0.0, self._shape.travel)
+        self._raw, self._angle = before
+        return np.asarray(angles / self._shape.flatness)
+
+    def at(self, way: Floats) -> tuple[Floats, Floats]:
+        """Positions (R, 3) and orientations (R, 3, 3) after ways (R,) m."""
+        shape = self._shape
+        if self._chord is not None:
+            return self._chord.at(way)
+        angles = way * shape.flatness
+        points = shape.points(angles)
+        share, part = angles / shape.travel, shape.via / shape.travel
+        if len(self._turns) == 1:
+            return points, self._turns[0].at(share)
+        to_via, from_via = self._turns
+        early = to_via.at(eased(np.minimum(share / part, 1.0)))
+        late = from_via.at(1.0 - eased(np.minimum((1.0 - share) / (1.0 - part), 1.0)))
+        return points, np.where((angles < shape.via)[:, None, None], early, late)
 
     def _off_turn(self, inside: Floats, rotations: Floats) -> Floats:
         share = inside / self._shape.travel

@@ -8,10 +8,10 @@ from itertools import product
 import numpy as np
 
 from irlx.streams.joint_stream import Floats
+from irlx.verifier.geometry.allowance import EXACT, Allowance
 from irlx.verifier.geometry.attitudes import BlendedTurn
 from irlx.verifier.geometry.bernstein import GAUSS, Jets, bernstein, nearest_parameters, quintic_control
 from irlx.verifier.geometry.curves import Curve
-from irlx.verifier.geometry.rotations import angle_between
 
 CELLS = 32
 """Parts of a join by its parameter: where the nearest point is sought, and the length summed."""
@@ -77,13 +77,14 @@ class Blend:
         cell = np.minimum((u * CELLS).astype(np.int64), CELLS - 1)
         return np.asarray(self._lengths[cell] + self._length_between(cell / CELLS, u))
 
-    def turned_off(self, u: Floats, rotations: Floats) -> Floats:
-        """Angle (R,) rad between rotations (R, 3, 3) and the orientation at u (R,).
+    def turned_off(self, u: Floats, rotations: Floats, allowance: Allowance = EXACT) -> Floats:
+        """Angle (R,) rad between rotations (R, 3, 3) and the orientation at u (R,), beyond an allowance.
 
         Where the rates of a curve jump just where the blend begins or ends, it may take up either.
         """
         share = np.clip(self.way(u) / self.length, 0.0, 1.0)
-        return np.asarray(np.min([angle_between(rotations, turn.at(share)) for turn in self._turns], axis=0))
+        off = [allowance.turned_off(rotations, turn.at(share)) for turn in self._turns]
+        return np.asarray(np.min(off, axis=0))
 
     @cached_property
     def _turns(self) -> list[BlendedTurn]:

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from irlx.promises import PATH_POSITION, PATH_STEP
 from irlx.streams.joint_stream import Floats, Integers
+from irlx.verifier.geometry.allowance import EXACT, Allowance
 from irlx.verifier.geometry.blends import Blend
 from irlx.verifier.geometry.corners import Corner, distance_taken
 from irlx.verifier.geometry.curves import Curve, Pose
-from irlx.verifier.geometry.rotations import angle_between
 
 FIRST_LOOK = 64
 """Rows looked at together on a part at first, then twice as many, and so on."""
@@ -75,11 +75,12 @@ class _Part:
 class ChainWay:
     """The way along the legs of a chain; rows are given to it in order.
 
-    `reach` is the longest way in a tick, m.
+    `reach` is the longest way in a tick, m; `allowance` the turns that the tool may stand off by.
     """
 
-    def __init__(self, legs: list[Leg], reach: float) -> None:
+    def __init__(self, legs: list[Leg], reach: float, allowance: Allowance = EXACT) -> None:
         self._legs = legs
+        self._allowance = allowance
         self._reach = reach
         self._bases = [0.0]
         self._blends: list[Blend | None] = []
@@ -145,7 +146,8 @@ class ChainWay:
         if corner.is_open:
             if not final and self._surely_before(leg, rows[0]) == len(rows[0]):
                 return False
-            found = distance_taken((first, second), corner, rows, self._hint(_Part(leg, False)), final)
+            hint = self._hint(_Part(leg, False))
+            found = distance_taken((first, second), corner, rows, hint, final, self._allowance)
             if found is None:
                 return False
             distance = found
@@ -246,12 +248,12 @@ class ChainWay:
             blend = self._blends[leg]
             assert blend is not None
             turned, along = (
-                blend.turned_off(at, rotations[here]),
+                blend.turned_off(at, rotations[here], self._allowance),
                 base + curve.length - blend.distance + blend.way(at),
             )
             placed.leg[here] = leg + (at > blend.corner)
         else:
-            turned, along = angle_between(rotations[here], curve.rotations(at)), base + at
+            turned, along = self._allowance.turned_off(rotations[here], curve.rotations(at)), base + at
             placed.leg[here] = leg
         placed.position[here], placed.along[here] = off, along
         placed.orientation[here] = turned

@@ -10,9 +10,10 @@ import numpy as np
 
 from irlx.promises import PATH_ORIENTATION, PATH_POSITION, PATH_STEP
 from irlx.streams.joint_stream import Floats, Integers
+from irlx.verifier.geometry.allowance import EXACT as EXACT_POSE
+from irlx.verifier.geometry.allowance import Allowance
 from irlx.verifier.geometry.blends import TANGENTS, Blend
 from irlx.verifier.geometry.curves import Curve, Pose
-from irlx.verifier.geometry.rotations import angle_between
 
 ON_A_LEG = 1e-8
 """Rows that are nearer to both legs than this, m, tell nothing of the blend between them."""
@@ -59,7 +60,12 @@ class _Rows(NamedTuple):
 
 
 def distance_taken(
-    legs: tuple[Curve, Curve], asked_for: Corner, rows: Pose, near: float, final: bool
+    legs: tuple[Curve, Curve],
+    asked_for: Corner,
+    rows: Pose,
+    near: float,
+    final: bool,
+    allowance: Allowance = EXACT_POSE,
 ) -> float | None:
     """Distance of the blend that the next rows run on from one curve to the next.
 
@@ -86,26 +92,29 @@ def distance_taken(
     furthest = np.argsort(between)[::-1][:ASKED]
     asked = found.part(np.union1d(spread, furthest[between[furthest] > 0.0]))
     if not asked_for.may_be_less:
-        return most if not len(about) or _worst(legs, most, asked) <= _worst(legs, 0.0, asked) else 0.0
+        worst = [_worst(legs, way, asked, allowance) for way in (most, 0.0)]
+        return most if not len(about) or worst[0] <= worst[1] else 0.0
     if between[row] > ON_A_LEG:
-        distance = _fitting(legs, most, found.positions[row], asked)
+        distance = _fitting(legs, most, found.positions[row], asked, allowance)
     else:
         distance = min(most, float(np.min(away[:seen])))
-    if len(about) and _worst(legs, distance, asked) > NEAR:
-        distance = _best(lambda d: _worst(legs, d, asked), distance, most)
+    if len(about) and _worst(legs, distance, asked, allowance) > NEAR:
+        distance = _best(lambda d: _worst(legs, d, asked, allowance), distance, most)
     return distance if distance > PATH_STEP else 0.0
 
 
-def _fitting(legs: tuple[Curve, Curve], most: float, position: Floats, asked: _Rows) -> float:
+def _fitting(
+    legs: tuple[Curve, Curve], most: float, position: Floats, asked: _Rows, allowance: Allowance
+) -> float:
     """Distance of the blend through a position (3,) that fits rows best.
 
     Where the tangents of a blend change with its distance, it does not change smoothly: then each is tried.
     """
     distance = _through(legs, most, position, TANGENTS)
-    if _worst(legs, distance, asked) <= NEAR:
+    if _worst(legs, distance, asked, allowance) <= NEAR:
         return distance
     found = [_through(legs, most, position, TANGENTS[k : k + 1]) for k in range(len(TANGENTS))]
-    return min([distance, *found], key=lambda d: _worst(legs, d, asked))
+    return min([distance, *found], key=lambda d: _worst(legs, d, asked, allowance))
 
 
 def _through(legs: tuple[Curve, Curve], most: float, position: Floats, tangents: Floats) -> float:
@@ -121,18 +130,18 @@ def _through(legs: tuple[Curve, Curve], most: float, position: Floats, tangents:
     return _root(miss, most)
 
 
-def _worst(legs: tuple[Curve, Curve], distance: float, rows: _Rows) -> float:
+def _worst(legs: tuple[Curve, Curve], distance: float, rows: _Rows, allowance: Allowance) -> float:
     """How far rows are off a path with a blend of a distance, in tolerances; the worst of them."""
     first, second = legs
     before, behind = np.minimum(rows.way, first.length - distance), np.maximum(rows.there, distance)
     offs = [
-        (first.points(before), angle_between(rows.rotations, first.rotations(before))),
-        (second.points(behind), angle_between(rows.rotations, second.rotations(behind))),
+        (first.points(before), allowance.turned_off(rows.rotations, first.rotations(before))),
+        (second.points(behind), allowance.turned_off(rows.rotations, second.rotations(behind))),
     ]
     if distance > PATH_STEP:
         blend = Blend(first, second, distance)
         u = blend.nearest(rows.positions)
-        offs.append((blend.points(u), blend.turned_off(u, rows.rotations)))
+        offs.append((blend.points(u), blend.turned_off(u, rows.rotations, allowance)))
     shares = [
         np.maximum(np.linalg.norm(rows.positions - points, axis=1) / PATH_POSITION, turned / PATH_ORIENTATION)
         for points, turned in offs

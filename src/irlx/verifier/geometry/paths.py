@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.streams.joint_stream import Floats
-from irlx.verifier.geometry.rotations import about_axis, angle_between, rotation_vectors
+from irlx.verifier.geometry.allowance import EXACT, Allowance
+from irlx.verifier.geometry.rotations import about_axis, rotation_vectors
 
 TURN_RULES = 1e-3
 """A path shorter than this many m per rad of its turn takes its parameter from the angle: the position
@@ -44,11 +45,13 @@ class LineWay:
     The position runs along the segment, the orientation turns about one fixed axis, the shortest
     way, in proportion to it: R(s) = R_start exp(s w), w = log(R_start' R_goal). The parameter s of
     a pose is that of the nearest point of the segment; of a pure turn, that of the nearest angle.
-    Of two ways round as long as each other, the one that the rows take counts.
+    Of two ways round as long as each other, the one that the rows take counts. `allowance`: turns that the
+    tool may stand off by.
     """
 
-    def __init__(self, start: Pose, goal: Pose) -> None:
+    def __init__(self, start: Pose, goal: Pose, allowance: Allowance = EXACT) -> None:
         self._start = start
+        self._allowance = allowance
         self._step = goal[0] - start[0]
         self._turns = shortest_turns(start[1], goal[1])
 
@@ -78,6 +81,27 @@ class LineWay:
         best, self._turns = settled([deviation.orientation for deviation in found], self._turns)
         return found[best]
 
+    @property
+    def reach(self) -> float:
+        """Length of the way of the position, m."""
+        return self.distance
+
+    def nearest(self, positions: Floats) -> Floats:
+        """Way (R,) m to the points nearest to positions (R, 3)."""
+        if self.distance == 0.0:
+            return np.zeros(len(positions))
+        return np.clip((positions - self._start[0]) @ self._step / self.distance, 0.0, self.distance)
+
+    def at(self, way: Floats) -> Pose:
+        """Positions (R, 3) and orientations (R, 3, 3) after ways (R,) m."""
+        turn = self._turns[0]
+        angle = float(np.linalg.norm(turn))
+        axis = turn / angle if angle > 0.0 else np.array([1.0, 0.0, 0.0])
+        forward = self._step / self.distance if self.distance > 0.0 else np.zeros(3)
+        share = way / self.distance if self.distance > 0.0 else way
+        points = self._start[0] + way[:, None] * forward
+        return points, self._start[1] @ about_axis(axis, share * angle)
+
     def _from(self, turn: Floats, positions: Floats, rotations: Floats) -> PathDeviation:
         angle = float(np.linalg.norm(turn))
         offsets = positions - self._start[0]
@@ -95,19 +119,26 @@ class LineWay:
         inside = np.clip(parameter, 0.0, 1.0)
         axis = turn / angle if angle > 0.0 else np.array([1.0, 0.0, 0.0])
         off_line = np.linalg.norm(offsets - inside[:, None] * self._step, axis=1)
-        off_turn = angle_between(turned, about_axis(axis, inside * angle))
+        off_turn = self._allowance.turned_off(turned, about_axis(axis, inside * angle))
         return PathDeviation(off_line, off_turn, inside * scale, scale, self.by_angle)
 
 
 class Turn:
     """The turn from one rotation (3, 3) to another about one fixed axis; rows are given to it in order.
 
-    Of two ways round as long as each other, the one that the rows take counts.
+    Of two ways round as long as each other, the one that the rows take counts. `allowance` as that of a line.
     """
 
-    def __init__(self, start: Floats, goal: Floats) -> None:
+    def __init__(self, start: Floats, goal: Floats, allowance: Allowance = EXACT) -> None:
         self._start = start
+        self._allowance = allowance
         self._ways = shortest_turns(start, goal)
+
+    def at(self, share: Floats) -> Floats:
+        """Orientations (R, 3, 3) at shares (R,) of the way."""
+        angle = float(np.linalg.norm(self._ways[0]))
+        axis = self._ways[0] / angle if angle > 0.0 else np.array([1.0, 0.0, 0.0])
+        return np.asarray(self._start @ about_axis(axis, share * angle))
 
     def off(self, share: Floats, rotations: Floats, counts: NDArray[np.bool_] | None = None) -> Floats:
         """Angle (R,) rad between rotations (R, 3, 3) and the turn at the shares (R,) of its way.
@@ -120,7 +151,7 @@ class Turn:
         for way in self._ways:
             angle = float(np.linalg.norm(way))
             axis = way / angle if angle > 0.0 else np.array([1.0, 0.0, 0.0])
-            found.append(angle_between(turned, about_axis(axis, share * angle)))
+            found.append(self._allowance.turned_off(turned, about_axis(axis, share * angle)))
         best, self._ways = settled([off[counts] for off in found], self._ways)
         return found[best]
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from irlx.promises import PATH_ORIENTATION, PATH_POSITION, PATH_STEP, PROGRAM_EXCESS
 from irlx.streams.joint_stream import Floats, Integers
 from irlx.verifier.chain_legs import ChainLegs, end_reach
-from irlx.verifier.demands import Demand
+from irlx.verifier.demands import Demand, allowance_of
 from irlx.verifier.findings.tally import Tally
 from irlx.verifier.geometry.chains import ChainWay, Placed
 from irlx.verifier.geometry.rotations import angle_between
@@ -74,7 +74,10 @@ class ChainRows:
         start_reach: float = 0.0,
     ) -> None:
         self._chain, self._legs, self._tallies, self._dt = chain, legs, tallies, dt
-        self._way = ChainWay(list(legs.legs), REACH * float(np.max(legs.speed)) * dt)
+        # Moves that are joined have none.
+        self._allowance = allowance_of(chain[0].move.block)
+        reach = REACH * float(np.max(legs.speed)) * dt
+        self._way = ChainWay(list(legs.legs), reach, self._allowance)
         start = chain[0].start.pose
         assert start is not None
         self._waiting = _Waiting(start)
@@ -262,7 +265,7 @@ class ChainRows:
         turned = angle_between(self._waiting.rotations[1 : count + 1], self._waiting.rotations[:count])
         for way, bound, unit in (
             (np.maximum(moved, np.abs(np.diff(alongs[1:]))), speed, "m/s"),
-            (turned, turn, "rad/s"),
+            (turned, np.where(self._allowance.turns, np.inf, turn), "rad/s"),
         ):
             rates = way / dt
             high = bound * (1.0 + PROGRAM_EXCESS) + 2.0 * PATH_STEP / dt
@@ -302,7 +305,7 @@ class ChainRows:
         assert goal is not None
         off = np.linalg.norm((waiting.positions[-1] - goal[0])[None], axis=1)
         self._tallies.goal[0].add(row, off, PATH_POSITION)
-        turned = angle_between(waiting.rotations[-1], goal[1])[None]
+        turned = self._allowance.turned_off(waiting.rotations[-1], goal[1])[None]
         self._tallies.goal[1].add(row, turned, PATH_ORIENTATION)
         missing = np.array([self._way.left - float(self._alongs[-1])])
         self._tallies.progress.add(row, missing, PATH_POSITION, rank=missing / PATH_POSITION, unit="m")

@@ -14,13 +14,15 @@ from irlx.promises import (
     PATH_STEP,
     PROGRAM_EXCESS,
     TICK_SHARE,
+    TOLERANCE_BAND,
     rounding_allowance,
 )
-from irlx.streams.joint_stream import Floats
+from irlx.streams.joint_stream import Floats, Integers
 from irlx.verifier.chain_legs import NoCurve, Unplaced, legs_of
-from irlx.verifier.demands import Demand
+from irlx.verifier.demands import Demand, allowance_of
 from irlx.verifier.evidence import Evidence
 from irlx.verifier.findings.finding import Check
+from irlx.verifier.geometry.allowance import EXACT, Allowance
 from irlx.verifier.geometry.paths import LineWay
 from irlx.verifier.geometry.rotations import angle_between
 from irlx.verifier.judges.chained_moves import HANDS_OVER, ChainRows, ChainTallies
@@ -47,6 +49,7 @@ class ToolMoveChecks:
         self._progress = evidence.tally("path progress", "m|rad")
         self._speed, self._acceleration = evidence.joint_rates
         self._time = evidence.tally("programmed time", "s")
+        self._bands = evidence.tally("tolerance bands", "m|rad")
         self._course: Course | None = None
         self._along, self._furthest = np.zeros(2), 0.0
         self._skipped: dict[int, str] = {}
@@ -111,16 +114,23 @@ class ToolMoveChecks:
 
     def _add_resting(self, move: MoveRows, pose: Pose) -> None:
         """A move without rows must have no way to go."""
-        course = course_of(self._evidence, move, pose)
+        course = course_of(self._evidence, move, self._start(pose, move))
         self._add_goal(course, pose)
         if course.way is not None and move.finished:
             row, missing = np.array([move.last]), np.array([course.way.length])
             self._progress.add(row, missing, PATH_POSITION, rank=missing / PATH_POSITION)
 
+    def _start(self, pose: Pose, move: MoveRows) -> Pose:
+        """Where the path of a move starts: the pose in the row before, or that off which the tool stands."""
+        start = self._evidence.demands[move.block.id].start.pose
+        return pose if start is None or move.block.tolerance is None else start
+
     def _add(self, rows: Rows, stretch: Stretch, move: MoveRows) -> None:
         if stretch.begins or self._course is None:
             before = stretch.before.start
-            self._course = course_of(self._evidence, move, rows.pose(before, move.block.id))
+            self._course = course_of(
+                self._evidence, move, self._start(rows.pose(before, move.block.id), move)
+            )
             self._along, self._furthest = np.zeros(2), 0.0
         course = self._course
         demand = self._evidence.demands[move.block.id]
@@ -131,8 +141,12 @@ class ToolMoveChecks:
             if not any(demand.crosses):
                 self._add_joint_rates(rows, stretch, move)
         elif course.way is not None:
-            self._add_path(rows, stretch, course)
-            self._add_tool_speed(rows, stretch, course)
+            allowance = allowance_of(move.block)
+            if allowance.shifts:
+                self._add_shifted(rows, stretch, course, allowance)
+            else:
+                self._add_path(rows, stretch, course, allowance)
+            self._add_tool_speed(rows, stretch, course, allowance)
         elif course.goal is None:
             self._skipped[move.block.id] = _OTHER_FRAME
         else:
@@ -154,11 +168,43 @@ class ToolMoveChecks:
             self._skipped[move.block.id] = _OTHER_FRAME
             return
         row = np.array([move.last])
-        self._goal[0].add(row, np.linalg.norm((reached[0] - goal[0])[None], axis=1), PATH_POSITION)
-        self._goal[1].add(row, angle_between(reached[1], goal[1])[None], PATH_ORIENTATION)
+        allowance = allowance_of(move.block)
+        # In the frame of the goal, where there is anything to allow.
+        apart = (reached[0] - goal[0])[None]
+        left = allowance.shifted_off(apart @ goal[1]) if allowance.shifts else apart
+        self._goal[0].add(row, np.linalg.norm(left, axis=1), PATH_POSITION)
+        turned = allowance.turned_off(reached[1][None], goal[1][None])
+        self._goal[1].add(row, turned, PATH_ORIENTATION)
+        self._add_bands(row, allowance, (reached[0][None], reached[1][None]), (goal[0][None], goal[1][None]))
 
-    def _add_path(self, rows: Rows, stretch: Stretch, course: Course) -> None:
+    def _add_bands(self, rows: Integers, allowance: Allowance, tool: Pose, asked: Pose) -> None:
+        """Poses of the tool (R, 3), (R, 3, 3) within the bands about the poses asked for."""
+        if allowance is not EXACT:
+            passed = allowance.excess(*tool, asked)
+            unit = "m|rad" if allowance.shifts and allowance.turns else "m" if allowance.shifts else "rad"
+            self._bands.add(rows, passed, TOLERANCE_BAND, rank=passed / TOLERANCE_BAND, unit=unit)
+
+    def _add_shifted(self, rows: Rows, stretch: Stretch, course: Course, allowance: Allowance) -> None:
+        """Rows of a move whose tool may stand beside its path: what of it is beyond the bands.
+
+        The place on the path is sought off which the tool stands within them. Of several nobody can tell
+        which was asked for, so that speeds along the path are not judged.
+        """
         assert course.way is not None
+        here = stretch.after
+        positions, rotations = rows.positions[here], rows.rotations[here]
+        asked = allowance.asked(course.way, positions, rotations)
+        left = allowance.shifted_off(np.einsum("rji,rj->ri", asked[1], positions - asked[0]))
+        self._path[0].add(stretch.rows, np.linalg.norm(left, axis=1), PATH_POSITION)
+        turned = allowance.turned_off(rotations, asked[1])
+        self._path[1].add(stretch.rows, turned, PATH_ORIENTATION)
+        self._add_bands(stretch.rows, allowance, (positions, rotations), asked)
+
+    def _add_path(self, rows: Rows, stretch: Stretch, course: Course, allowance: Allowance) -> None:
+        assert course.way is not None
+        if allowance.turns:
+            tool = rows.positions[stretch.after], rows.rotations[stretch.after]
+            self._add_bands(stretch.rows, allowance, tool, allowance.asked(course.way, *tool))
         found = course.way.deviation(rows.positions[stretch.after], rows.rotations[stretch.after])
         self._path[0].add(stretch.rows, found.position, PATH_POSITION)
         self._path[1].add(stretch.rows, found.orientation, PATH_ORIENTATION)
@@ -185,15 +231,18 @@ class ToolMoveChecks:
         high = bound * (1.0 + PROGRAM_EXCESS) + 4.0 * PATH_STEP / self._dt**2
         self._acceleration.add(stretch.rows, rates, bound, ~(rates <= high), rates / high, unit)
 
-    def _add_tool_speed(self, rows: Rows, stretch: Stretch, course: Course) -> None:
+    def _add_tool_speed(self, rows: Rows, stretch: Stretch, course: Course, allowance: Allowance) -> None:
+        """No faster than programmed, in what no band leaves to the robot."""
         here = stretch.after
         positions, rotations = rows.before(stretch)
         moved = np.linalg.norm(rows.positions[here] - positions, axis=1)
         turned = angle_between(rows.rotations[here], rotations)
-        for way, bound, unit in (
-            (moved, course.speed, "m/s"),
-            (turned, course.move.law.speed_ori, "rad/s"),
+        for way, bound, unit, is_free in (
+            (moved, course.speed, "m/s", allowance.shifts),
+            (turned, course.move.law.speed_ori, "rad/s", allowance.turns),
         ):
+            if is_free:
+                continue
             rates = way / self._dt
             high = bound * (1.0 + PROGRAM_EXCESS) + 2.0 * PATH_STEP / self._dt
             self._speed.add(stretch.rows, rates, bound, ~(rates <= high), rates / high, unit)
@@ -255,7 +304,7 @@ class ToolMoveChecks:
             for tally in tallies:
                 tally.detail = f"{len(self._skipped)} moves not checked: {reason}"
         of_tool = [tally.check(f"the stream's {reason}" if self._skipped else "") for tally in tallies]
-        return [*of_tool, self._time.check()]
+        return [*of_tool, self._time.check(), self._bands.check()]
 
 
 def _neighbours(demands: list[Demand]) -> dict[int, tuple[MoveRows | None, MoveRows | None]]:

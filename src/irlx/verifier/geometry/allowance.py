@@ -1,0 +1,147 @@
+"""How far a tool may stand off the pose that is asked for: bands of its coordinates in that pose."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, pi
+from typing import Protocol
+
+import numpy as np
+
+from irlx.streams.joint_stream import Floats
+from irlx.verifier.geometry.rotations import about_axis, angle_between, rotation_vectors
+
+ROUNDS = 50
+"""Most steps by which the place on a way is sought off which a shifted tool stands."""
+
+SETTLED = 1e-13
+"""A step that is this short, m, is the last one."""
+
+ASIDE = 1e-8
+"""Way, m, by which the change of what is beyond the bands is told."""
+
+
+class Way(Protocol):
+    """A way of the tool."""
+
+    @property
+    def reach(self) -> float:
+        """Length of the way of the position, m."""
+
+    def nearest(self, positions: Floats) -> Floats:
+        """Way (R,) m to the points nearest to positions (R, 3)."""
+
+    def at(self, way: Floats) -> tuple[Floats, Floats]:
+        """Positions (R, 3) and orientations (R, 3, 3) after ways (R,) m."""
+
+
+@dataclass(frozen=True)
+class Allowance:
+    """Bands (6,): m along x, y, z, then rad about x, y, z, in the frame of the pose asked for.
+
+    A tool at Trans(x, y, z) Rz(c) Ry(b) Rx(a) in that frame is within them where |x| <= dx and so on; turns
+    of half a turn and more are free.
+    """
+
+    bands: tuple[float, float, float, float, float, float]
+
+    @property
+    def shifts(self) -> bool:
+        """Whether a displacement is allowed."""
+        return any(band > 0.0 for band in self.bands[:3])
+
+    @property
+    def turns(self) -> bool:
+        """Whether a turn is allowed."""
+        return any(band > 0.0 for band in self.bands[3:])
+
+    def turned_off(self, actual: Floats, asked: Floats) -> Floats:
+        """Angle (...) rad of what is left between rotations (..., 3, 3) once the bands are used."""
+        if not self.turns:
+            return angle_between(actual, asked)
+        return self._turned(actual, asked)[1]
+
+    def shifted_off(self, offsets: Floats) -> Floats:
+        """What is left (R, 3) m of displacements in the frame of the pose asked for."""
+        most = np.array(self.bands[:3])
+        return np.asarray(offsets - np.clip(offsets, -most, most))
+
+    def asked(self, way: Way, positions: Floats, rotations: Floats) -> tuple[Floats, Floats]:
+        """Poses (R, 3), (R, 3, 3) of a way off which tools at positions (R, 3), rotations (R, 3, 3) stand.
+
+        Displacements along the way leave the place open: from the point nearest to the tool it is sought by
+        steps of Gauss and Newton where least is beyond the bands, 1 rad counting like 1 m.
+        """
+        along = way.nearest(positions)
+        for _ in range(ROUNDS if self.shifts else 0):
+            left = self._left(way, along, positions, rotations)
+            aside = np.where(along + ASIDE <= way.reach, along + ASIDE, along - ASIDE)
+            slope = (self._left(way, aside, positions, rotations) - left) / (aside - along)[:, None]
+            size = np.sum(slope**2, axis=1)
+            step = -np.sum(slope * left, axis=1) / np.where(size > 0.0, size, 1.0)
+            moved = np.clip(along + step, 0.0, way.reach)
+            if np.max(np.abs(moved - along), initial=0.0) <= SETTLED:
+                break
+            along = moved
+        return way.at(along)
+
+    def _left(self, way: Way, along: Floats, positions: Floats, rotations: Floats) -> Floats:
+        """What is beyond the bands (R, 6), m and rad, at ways (R,)."""
+        points, asked = way.at(along)
+        shifted = self.shifted_off(np.einsum("rji,rj->ri", asked, positions - points))
+        kept = self._kept(self._turned(rotations, asked)[0])
+        between = np.swapaxes(asked, 1, 2) @ rotations
+        return np.hstack([shifted, rotation_vectors(np.swapaxes(kept, 1, 2) @ between)])
+
+    def excess(self, position: Floats, rotation: Floats, asked: tuple[Floats, Floats]) -> Floats:
+        """How far (R,) the coordinates that have a band pass it, m or rad: of all the largest.
+
+        `position` (R, 3) and `rotation` (R, 3, 3) are of the tool, `asked` of the poses asked for.
+        """
+        offsets = np.einsum("rji,rj->ri", asked[1], position - asked[0])
+        values = np.hstack([offsets, self._turned(rotation, asked[1])[0]])
+        banded = np.array(self.bands) > 0.0
+        passed = np.abs(values) - self._most
+        return np.asarray(np.max(np.where(banded, passed, -inf), axis=1, initial=-inf))
+
+    def _kept(self, turns: Floats) -> Floats:
+        """Rotations (R, 3, 3) by turns (R, 3) about x, y, z, as far as the bands let them."""
+        most = self._most[3:]
+        return _from_turns(np.clip(turns, -most, most))
+
+    @property
+    def _most(self) -> Floats:
+        most = np.array(self.bands)
+        most[3:][most[3:] >= pi] = inf
+        return most
+
+    def _turned(self, actual: Floats, asked: Floats) -> tuple[Floats, Floats]:
+        """Turns (R, 3) about x, y, z, and the angle (R,) that is left of them.
+
+        R = Rz(c) Ry(b) Rx(a) has two triples of angles; that counts which passes the bands by less.
+        """
+        between = np.swapaxes(asked, -1, -2) @ actual
+        a = np.arctan2(between[..., 2, 1], between[..., 2, 2])
+        across = np.hypot(between[..., 2, 1], between[..., 2, 2])
+        b = np.arctan2(-between[..., 2, 0], across)
+        c = np.arctan2(between[..., 1, 0], between[..., 0, 0])
+        ways = np.stack([np.stack([a, b, c], axis=-1), _whole(np.stack([a, -b, c], axis=-1))])
+        beyond = np.max(np.abs(ways) - self._most[3:], axis=-1)
+        turns = np.where((beyond[1] < beyond[0])[..., None], ways[1], ways[0])
+        return turns, angle_between(between, self._kept(turns))
+
+
+EXACT = Allowance((0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+"""The tool stands at the pose that is asked for."""
+
+
+def _whole(angles: Floats) -> Floats:
+    """Half a turn further, between half a turn back and forward."""
+    return np.asarray(np.mod(angles + 2.0 * pi, 2.0 * pi) - pi)
+
+
+def _from_turns(turns: Floats) -> Floats:
+    """Rz(c) Ry(b) Rx(a), (R, 3, 3), of angles (R, 3) about x, y, z."""
+    flat = turns.reshape(-1, 3)
+    x, y, z = (about_axis(axis, flat[:, number]) for number, axis in enumerate(np.eye(3)))
+    return np.asarray((z @ y @ x).reshape(*turns.shape[:-1], 3, 3))

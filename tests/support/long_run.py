@@ -1,0 +1,32 @@
+"""Cases of one kind, the first of them in the default run, all of them in the long one (`-m slow`)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import pytest
+
+
+def first(count: int, cases: Iterable[object]) -> list[object]:
+    """The cases for `parametrize`; those behind the first `count` are marked slow."""
+    return [
+        case if place < count else pytest.param(case, marks=pytest.mark.slow)
+        for place, case in enumerate(cases)
+    ]
+
+
+def chequered(rows: list, columns: Iterable[object]) -> list[object]:
+    """All pairs of a row, a `pytest.param` with an id, and a column; every other pair is marked slow.
+
+    Each row and each column keeps half of its pairs in the default run.
+    """
+    return [
+        pytest.param(
+            *row.values,
+            column,
+            marks=[*row.marks, *([pytest.mark.slow] if (i + j) % 2 else [])],
+            id=f"{row.id}-{column}",
+        )
+        for i, row in enumerate(rows)
+        for j, column in enumerate(columns)
+    ]
