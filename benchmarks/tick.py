@@ -13,12 +13,16 @@ import argparse
 import json
 from dataclasses import dataclass
 from importlib.resources import files
+from pathlib import Path
 from statistics import median
+from tempfile import TemporaryDirectory
 from time import perf_counter
 
 import numpy as np
 
 from irlx.blocks import CyclicBlock, MotionLaw, MoveBlock, MoveKind, Origin, PoseTarget
+from irlx.cell.load import load_cell
+from irlx.cell.made_constraints import constrained
 from irlx.diagnostics import Place, SourceText, Span
 from irlx.pacing.pacer import Pacer
 from irlx.pacing.situation import PacingSetup
@@ -76,6 +80,34 @@ def koch11() -> Robot:
     return Robot(Kinematics(description), limits, start, np.array([-2.0, 0.0, 0.0]), 1.0)
 
 
+def packaged(name: str, way: tuple[float, float, float], speed: float, constraint: str = "") -> Robot:
+    """A packaged robot with its own start and limits, links free to touch, with a constraint of its cell."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "cell.toml"
+        path.write_text(f'[robot]\nmodel = "{name}"\n{constraint}', encoding="utf-8")
+        cell = load_cell(path)
+    kinematics = constrained(Kinematics(cell.robot), cell)
+    return Robot(kinematics, cell.limits, cell.start, np.array(way), speed)
+
+
+AISLE = """[[constraint]]
+name = "aisle"
+link = "platform"
+path = [[-1000, 0], [0, 0], [1000, 100], [2000, -100]]
+"""
+
+
+def robots() -> dict[str, Robot]:
+    """The robots that are measured, by what the table calls them."""
+    return {
+        "n=7 arm7": arm7(),
+        "n=9 mobile9": packaged("mobile9", (0.2, 0.1, 0.0), 0.1),
+        "n=9 mobile9 on its path": packaged("mobile9", (0.2, 0.1, 0.0), 0.1, AISLE),
+        "n=11 koch11": koch11(),
+        "n=20 snake20": packaged("snake20", (0.05, 0.1, 0.05), 0.1),
+    }
+
+
 def there_and_back(robot: Robot, dt: float, cyclic: bool) -> tuple[float, float]:
     """Time (us) and Newton steps per emitted tick of a line and its way back, at a tick of `dt` s."""
     weights = np.arange(float(robot.start.size), 0.0, -1.0)
@@ -107,7 +139,7 @@ def main() -> None:
     asked = parser.parse_args()
     cases = [
         (f"{name}, {'cyclic' if cyclic else 'least motion'}, {dt * 1000:g} ms", robot, dt, cyclic)
-        for name, robot in (("n=7 arm7", arm7()), ("n=11 koch11", koch11()))
+        for name, robot in robots().items()
         for cyclic in (False, True)
         for dt in (0.001, 0.004)
     ]
@@ -126,9 +158,9 @@ def main() -> None:
     if asked.json:
         print(json.dumps({"unit": "us per tick", "rounds": asked.rounds, "cases": result}, indent=2))
         return
-    print(f"{'case':32}{'least us':>10}{'median us':>11}{'Newton steps':>14}")
+    print(f"{'case':42}{'least us':>10}{'median us':>11}{'Newton steps':>14}")
     for name, row in result.items():
-        print(f"{name:32}{row['least']:>10}{row['median']:>11}{row['newton_steps']:>14}")
+        print(f"{name:42}{row['least']:>10}{row['median']:>11}{row['newton_steps']:>14}")
 
 
 if __name__ == "__main__":

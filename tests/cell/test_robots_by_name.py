@@ -28,7 +28,7 @@ WEIGHTS = {
     "mobile8": [60, 60, 6, 5, 4, 3, 2, 1],
     "mobile9": [60, 60, 30, 6, 5, 4, 3, 2, 1],
     "gantry9": [30, 25, 20, 6, 5, 4, 3, 2, 1],
-    "snake20": list(range(20, 0, -1)),
+    "snake20": [1] * 20,
 }
 MASSES = {"mobile8": 200.0, "mobile9": 200.0, "gantry9": 350.0}
 """Weights of robots that bring their own: those of the platform are per m2."""

@@ -123,3 +123,16 @@ def test_rounding_allowance_covers_what_storage_adds() -> None:
 
 def test_rounding_allowance_of_nothing_is_tiny() -> None:
     assert rounding_allowance(np.zeros((0, 7)), 0.01)[1] < 1e-300
+
+
+def test_the_lever_leaves_out_the_strokes_that_carry_the_first_turning_axis() -> None:
+    """Of the robot above, which turns first, it is the reach; behind a rail of 3 m still that."""
+    own = read_urdf(TEXT)
+    assert own.lever == own.reach == pytest.approx(5.0 + 2.0 + 0.5)
+    rail = """<link name="rail"/><joint name="j0" type="prismatic"><parent link="rail"/><child link="a"/>
+<origin xyz="0 0 7"/><axis xyz="1 0 0"/><limit lower="-3" upper="2" velocity="2"/></joint></robot>"""
+    on_rail = read_urdf(TEXT.replace("</robot>", rail))
+    assert on_rail.reach == pytest.approx(1.0 + own.reach + 3.0)
+    assert on_rail.lever == pytest.approx(own.lever)
+    only_slides = read_urdf(TEXT.replace('type="revolute"', 'type="prismatic"'))
+    assert only_slides.lever == only_slides.reach == pytest.approx(5.0 + 2.0 + 0.5 + 1.0)

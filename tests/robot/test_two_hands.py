@@ -132,7 +132,7 @@ def test_a_tool_and_constraints_stay_with_the_frame():
 
 def test_rows_are_scaled_by_both_arms_and_no_view_is_made_twice():
     plain = Kinematics(robot())
-    seen, both = plain.relative_to(FRAME), plain.description.reach + plain.description.reach_to("left_hand")
+    seen, both = plain.relative_to(FRAME), plain.description.lever + plain.description.lever_to("left_hand")
     assert seen is plain.relative_to(replace(FRAME))
     assert seen.row_scale[0] == pytest.approx(1 / both)
     with pytest.raises(KeyError):

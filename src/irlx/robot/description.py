@@ -134,12 +134,30 @@ class RobotDescription:
 
     def reach_to(self, link: str) -> float:
         """Upper bound of the distance between the first axis that moves a link and the link, m; 0 without."""
+        axes = [joint for joint in self.chain_to(link) if joint in self.axes]
+        return self._farthest(link, axes[0]) if axes else 0.0
+
+    @cached_property
+    def lever(self) -> float:
+        """Upper bound of the distance between the first turning axis and the tool, m.
+
+        What a turn of one rad is worth at the tool, at most: strokes of slides that carry the whole arm, a
+        rail or a platform, have no part in it. That of `reach` where no axis turns.
+        """
+        return self.lever_to(self.tip) or self.reach
+
+    def lever_to(self, link: str) -> float:
+        """The same of the first axis that turns a link, and that link; 0 where none does."""
+        turning = [j for j in self.chain_to(link) if j in self.axes and not j.is_prismatic]
+        return self._farthest(link, turning[0]) if turning else 0.0
+
+    def _farthest(self, link: str, first: Joint) -> float:
+        """Length of the chain to a link behind one of its axes, m, its slides at their far ends."""
         chain = self.chain_to(link)
-        axes = [joint for joint in chain if joint in self.axes]
-        start = chain.index(axes[0]) + 1 if axes else len(chain)
-        total: float = sum(sum(c * c for c in joint.xyz) ** 0.5 for joint in chain[start:])
-        for joint in axes:
-            if joint.is_prismatic:
+        start = chain.index(first)
+        total: float = sum(sum(c * c for c in joint.xyz) ** 0.5 for joint in chain[start + 1 :])
+        for joint in chain[start:]:
+            if joint.is_prismatic and joint in self.axes:
                 stroke = max(abs(joint.lower), abs(joint.upper))
                 total += stroke if stroke != inf else 0.0
         return total

@@ -114,7 +114,7 @@ class Kinematics:
         conditions = sum(len(item.residual(np.zeros(self.joints))) for item in self.constraints)
         self.rows = self.task.size + conditions
         scale = np.ones(self.rows)
-        scale[: self.task.linear] /= description.reach
+        scale[: self.task.linear] /= description.lever
         self.row_scale = scale
 
     def constrained(self, constraints: Sequence[Constraint]) -> Kinematics:

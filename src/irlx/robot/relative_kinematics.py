@@ -37,8 +37,8 @@ class RelativeKinematics(Kinematics):
         name = f"frame {frame.name}"
         self._seen_by = self.model.addFrame(pin.Frame(name, parent, 0, own, pin.FrameType.OP_FRAME))
         self.data = self.model.createData()
-        reach = self.description.reach + self.description.reach_to(frame.link)
-        self.row_scale[: self.task.linear] = 1.0 / reach
+        lever = self.description.lever + self.description.lever_to(frame.link)
+        self.row_scale[: self.task.linear] = 1.0 / lever
 
     @property
     def frame(self) -> LinkFrame:
