@@ -10,8 +10,9 @@ from math import radians
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
-from irlx.blocks import AskPause, AskStandstill, Block, Origin, Question
+from irlx.blocks import AskPause, AskStandstill, Block, LinkFrame, Origin, Question
 from irlx.cell.setting import setting_of
 from irlx.diagnostics import Diagnostic, IrlxError, Place, report
 from irlx.interpreter.channels.channels import Channels, Told
@@ -24,6 +25,7 @@ from irlx.pacing.correction.tool_rates import ToolRates
 from irlx.pacing.executed import Executed
 from irlx.pacing.explanation import TickExplanation
 from irlx.pacing.explanation import explain_tick as explain_row
+from irlx.pacing.frames import frame_of, seen_from
 from irlx.pacing.lookahead import Lookahead
 from irlx.pacing.notes import Notes
 from irlx.pacing.pacer import Pacer
@@ -224,7 +226,14 @@ class Execution:
         cell = self.job.cell
         limits, setup = rows.limits or cell.limits, self._pacer.setup
         dt = self.job.tick_ns / 1e9
-        return explain_row(rows, before, tick, limits, setup.weights, setup.kinematics, dt)
+        place = self._pacer.locate(rows.block.origin)
+        kinematics = seen_from(setup.kinematics, frame_of(rows.block), place)
+        return explain_row(rows, before, tick, limits, setup.weights, kinematics, dt)
+
+    def tool_in(self, frame: LinkFrame, q: Array) -> Array:
+        """Position (m) and quaternion, (7,), of the tool in posture q (n,), as a frame of a link sees it."""
+        rotation, position = self._pacer.setup.kinematics.relative_to(frame).tool_pose(q)
+        return np.concatenate([position, Rotation.from_matrix(rotation).as_quat()])
 
     def start(self) -> tuple[StreamHeader, Array, Array, Array]:
         """Header of the stream; start posture (n,), and the tool's rotation (3, 3), position (3,) m in it."""

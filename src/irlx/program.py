@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path, PurePath
@@ -231,7 +231,7 @@ class _Beside:
         self.lists = _ListFiles(program)
         self.modules: list[ModuleFile] = []
         self.findings: list[Diagnostic] = []
-        self.names: tuple[str, ...] = ()
+        self.names: Mapping[str, bool] | None = None
         self.obstacles: tuple[str, ...] | None = None
         self._open = [program]
         self._done: dict[Path, Analysis] = {}
@@ -284,7 +284,7 @@ def _analysis(
 ) -> Analysis:
     """Analysis of the bytes of a file. Raises ProgramError for bytes that are no text."""
 
-    def cell_names(root: tree.Program | tree.Module) -> tuple[str, ...]:
+    def cell_names(root: tree.Program | tree.Module) -> Mapping[str, bool] | None:
         files.names = _found_names(path, root) if cell is None else frame_names(Path(cell))
         return files.names
 
@@ -306,10 +306,10 @@ def _analysis(
     return replace(analysis, diagnostics=found, modules=tuple(files.modules))
 
 
-def _found_names(path: Path, root: tree.Program | tree.Module) -> tuple[str, ...]:
-    """Names of the frames of the cell that a run of this file would find."""
+def _found_names(path: Path, root: tree.Program | tree.Module) -> Mapping[str, bool] | None:
+    """Names of the frames of the cell that a run of this file would find, None where there is none."""
     cell = _found_cell(path, root)
-    return () if cell is None else frame_names(cell)
+    return None if cell is None else frame_names(cell)
 
 
 def _found_joints(path: Path, root: tree.Program | tree.Module) -> tuple[str, ...]:

@@ -117,7 +117,7 @@ def record(
 
 def execute(execution: Execution, progress: Progress | None = None, explain_tick: int | None = None) -> Run:
     """Run a prepared job to its end; see `run`."""
-    return _finished(execution, Recording(*execution.start()), progress, explain_tick)
+    return _finished(execution, Recording(*execution.start(), execution.tool_in), progress, explain_tick)
 
 
 def execute_to_files(
@@ -128,7 +128,7 @@ def execute_to_files(
 ) -> Outcome:
     """Run a prepared job to its end, its rows going to files; see `record`."""
     header, start, rotation, position = execution.start()
-    recording = FileRecording(header, start, (rotation, position), outputs)
+    recording = FileRecording(header, start, (rotation, position), outputs, execution.tool_in)
     try:
         return _finished(execution, recording, progress, explain_tick)
     finally:

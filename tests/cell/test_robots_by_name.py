@@ -48,6 +48,7 @@ def smallest_singular_value(found):
 def test_names():
     names = (
         "arm7",
+        "dual14",
         "gantry9",
         "irb6",
         "koch11",

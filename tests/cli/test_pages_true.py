@@ -20,7 +20,20 @@ PAGES = Path(__file__).parents[2] / "docs" / "diagnostics"
 CODES = [
     code.id for group in (COMMAND, TYPES, DATA_LISTS, PACING, CLEARANCE, RUN, FILES, CELL) for code in group
 ]
-IN_WORDS = {"IRL090", "IRL229", "IRL241", "IRL264", "IRL265", "IRL513", "IRL523", "IRL525", "IRL614"} | {
+IN_WORDS = {
+    "IRL440",
+    "IRL442",
+    "IRL515",
+    "IRL090",
+    "IRL229",
+    "IRL241",
+    "IRL264",
+    "IRL265",
+    "IRL513",
+    "IRL523",
+    "IRL525",
+    "IRL614",
+} | {
     "IRL550",
     "IRL564",
     "IRL553",

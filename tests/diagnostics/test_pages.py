@@ -123,6 +123,8 @@ IMPORT_MESSAGES = {
 }
 
 
+OF_CELLS = {"IRL290", "IRL291"}
+"""Names of a cell, whose pages show one beside the program."""
 OF_FILES = {"IRL260", "IRL261", "IRL262", "IRL263", "IRL264", "IRL265"}
 """Modules and lists as files, which have tests of their own: their pages show several."""
 
@@ -180,4 +182,7 @@ def test_imports(code):
 
 def test_language_codes_are_all_covered():
     ours = {code for code in CATALOGUE if re.match(r"IRL(1\d\d|2([015-9]\d|4[6-9])|3[0-3]\d|4[01]\d)", code)}
-    assert ours == MESSAGES.keys() | IMPORT_MESSAGES.keys() | {"IRL144", "IRL130", "IRL131"} | OF_FILES
+    assert (
+        ours
+        == MESSAGES.keys() | IMPORT_MESSAGES.keys() | {"IRL144", "IRL130", "IRL131"} | OF_FILES | OF_CELLS
+    )

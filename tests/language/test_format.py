@@ -342,3 +342,17 @@ def test_how_often_a_text_is_read(monkeypatch, text, readings):
     format_source(text)
     assert len(read) == readings
     assert len(set(read)) == readings
+
+
+@pytest.mark.req("LANG-74", "TRF-23")
+def test_in_frame():
+    assert body("move lin a,b in frame Pipe,SPEED:=5;") == ["MOVE LIN a, b IN FRAME Pipe SPEED := 5;"]
+    assert body("MOVE LIN a\nIN FRAME pipe\nSPEED := 5 WITH RECONFIGURATION k;") == [
+        "MOVE LIN a",
+        "  IN FRAME pipe",
+        "  SPEED := 5",
+        "  WITH RECONFIGURATION k;",
+    ]
+    assert body("reconfiguration k in { there } frame pipe;") == [
+        "RECONFIGURATION k IN { there } FRAME pipe;"
+    ]

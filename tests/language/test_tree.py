@@ -43,8 +43,12 @@ def assign(word, value):
     return t.Assignment(AT, var(word), num(value))
 
 
-def move(kind, *targets, path=False, incremental=False, params=(), clauses=()):
-    return t.Move(AT, kind, path, incremental, targets, params, clauses)
+def move(kind, *targets, path=False, incremental=False, frames=(), params=(), clauses=()):
+    return t.Move(AT, kind, path, incremental, targets, frames, params, clauses)
+
+
+def in_frame(word):
+    return t.InFrame(AT, name(word))
 
 
 TRUE, FALSE = t.BoolLiteral(AT, True), t.BoolLiteral(AT, False)
@@ -155,6 +159,20 @@ STATEMENTS = {
     "CYCLICEND;": t.CyclicEnd(AT),
     "OBSTACLE ściana_1;": t.ObstacleStart(AT, name("ściana_1")),
     "OBSTACLEEND wall;": t.ObstacleEnd(AT, name("wall")),
+    "MOVE LIN p, q IN FRAME pipe SPEED := 5;": move(
+        "LIN", P, Q, frames=(in_frame("pipe"),), params=(param("speed", num(5)),)
+    ),
+    "MOVE_INC LIN PATH (p, q) IN FRAME Frame WITH TOLERANCE w;": move(
+        "LIN",
+        P,
+        Q,
+        path=True,
+        incremental=True,
+        frames=(in_frame("Frame"),),
+        clauses=(t.WithTolerance(AT, var("w")),),
+    ),
+    "frame := 1;": assign("frame", 1),
+    "RECONFIGURATION konf IN FRAME pipe;": t.Reconfiguration(AT, var("konf"), in_frame("pipe")),
     "RECONFIGURATION konf;": t.Reconfiguration(AT, var("konf")),
     "CRITERION c;": t.CriterionStart(AT, name("c"), ()),
     "CRITERION c WEIGHT := 2, x := 1;": t.CriterionStart(

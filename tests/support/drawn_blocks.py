@@ -21,6 +21,7 @@ from irlx.blocks import (
     LimitClause,
     LimitKind,
     LimitSwitchBlock,
+    LinkFrame,
     MotionLaw,
     MoveBlock,
     MoveKind,
@@ -77,6 +78,7 @@ courses = st.builds(ArcCourse, targets, st.none() | numbers, st.booleans(), post
     st.lists(targets, max_size=3).map(tuple),
     st.lists(joints, max_size=3).map(tuple),
 )
+frames = st.none() | st.builds(LinkFrame, st.text(), st.text(), places, turns)
 ports = st.builds(Port, st.text(), st.sampled_from(SignalKind))
 blends = st.builds(Blend, st.none() | numbers, st.none() | numbers)
 blocks = st.one_of(
@@ -92,7 +94,7 @@ blocks = st.one_of(
     st.builds(LimitSwitchBlock, kind=kinds, range=st.none() | ranges, **common),
     st.builds(ObstacleBlock, name=st.text(), active=st.booleans(), **common),
     st.builds(CriterionBlock, name=st.text(), choice=st.none() | criteria, **common),
-    st.builds(ReconfigureBlock, target=st.builds(JointTarget, vectors), law=laws, **common),
+    st.builds(ReconfigureBlock, target=joints, law=laws, frame=frames, **common),
     st.builds(
         MoveBlock,
         kind=st.sampled_from(MoveKind),
@@ -103,6 +105,7 @@ blocks = st.one_of(
         reconfiguration=postures,
         criteria=st.lists(st.builds(CriterionClause, criteria, origins), max_size=2).map(tuple),
         blend=st.none() | blends,
+        frame=frames,
         tolerance=st.none() | st.builds(ToleranceClause, st.tuples(*[numbers] * 6), origins),
         **common,
     ),

@@ -7,6 +7,7 @@ numbered from 1 in the robot's order.
 
 from irlx.blocks.block import Block, HaltBlock, Origin, PauseBlock
 from irlx.blocks.criterion import CriterionBlock, CriterionChoice, CriterionClause, CriterionParam
+from irlx.blocks.link_frame import LinkFrame
 from irlx.blocks.move import ArcCourse, Blend, MotionLaw, MoveBlock, MoveKind, PathCourse, Profile
 from irlx.blocks.obstacle import ObstacleBlock
 from irlx.blocks.options import (
@@ -72,6 +73,7 @@ __all__ = [
     "LimitClause",
     "LimitKind",
     "LimitSwitchBlock",
+    "LinkFrame",
     "MachineQuestion",
     "MotionLaw",
     "MoveBlock",

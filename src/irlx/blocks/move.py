@@ -7,6 +7,7 @@ from enum import Enum
 
 from irlx.blocks.block import Block
 from irlx.blocks.criterion import CriterionClause
+from irlx.blocks.link_frame import LinkFrame
 from irlx.blocks.options import LimitClause
 from irlx.blocks.targets import JointTarget, Target
 from irlx.blocks.tolerance import ToleranceClause
@@ -101,6 +102,8 @@ class MoveBlock(Block):
     `reconfiguration`: posture to be drawn to on the way, the target's pose being kept (of a CIRCLE with a
     posture for its via point: on the way from there); the cyclic option is off for such a move. `criteria`
     are added for this move alone. `tolerance`: bands within which the tool may stand off its programmed pose.
+    In a `frame` that moves with a link all poses count, and the path and the speeds of its law: they are
+    what that frame sees of the tool.
     """
 
     kind: MoveKind
@@ -112,6 +115,7 @@ class MoveBlock(Block):
     criteria: tuple[CriterionClause, ...] = ()
     blend: Blend | None = None
     tolerance: ToleranceClause | None = None
+    frame: LinkFrame | None = None
 
     @property
     def arc(self) -> ArcCourse | None:

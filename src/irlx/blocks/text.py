@@ -8,6 +8,7 @@ from math import degrees
 
 from irlx.blocks.block import Block, HaltBlock, PauseBlock
 from irlx.blocks.criterion import CriterionBlock, CriterionChoice
+from irlx.blocks.link_frame import LinkFrame
 from irlx.blocks.move import Blend, MotionLaw, MoveBlock, MoveKind, PathCourse, Profile
 from irlx.blocks.obstacle import ObstacleBlock
 from irlx.blocks.options import CyclicBlock, FreezeBlock, JointRange, LimitKind, LimitSwitchBlock
@@ -81,7 +82,8 @@ def _signal(port: Port, value: float) -> str:
 
 @_words.register
 def _(block: MoveBlock, joint_units: Sequence[str]) -> str:
-    words = [f"MOVE {block.kind.value}", *_way(block, joint_units), _law(block.kind, block.law)]
+    words = [f"MOVE {block.kind.value}", *_way(block, joint_units), *_frame(block.frame)]
+    words.append(_law(block.kind, block.law))
     words += [] if block.blend is None else [_blend(block.kind, block.blend)]
     words += [f"WITH {_SWITCH[clause.kind]} {_range(clause.range, joint_units)}" for clause in block.limits]
     words += _postures(block, joint_units)
@@ -103,7 +105,15 @@ def _(block: WeightsBlock, joint_units: Sequence[str]) -> str:
 def _(block: ReconfigureBlock, joint_units: Sequence[str]) -> str:
     law = f"speed {_mm(block.law.speed)} mm/s speed_ori {_deg(block.law.speed_ori)} deg/s"
     law += _override(block.law)
-    return f"RECONFIGURATION to {_target(block.target, joint_units)} {law}"
+    return " ".join([f"RECONFIGURATION to {_target(block.target, joint_units)}", *_frame(block.frame), law])
+
+
+def _frame(frame: LinkFrame | None) -> list[str]:
+    """Words for a frame that moves with a link."""
+    if frame is None:
+        return []
+    pose = f"{_group(map(_mm, frame.position))} {_group(map(number, frame.orientation))}"
+    return [f"frame {frame.name} at {pose} of {frame.link}"]
 
 
 @_words.register

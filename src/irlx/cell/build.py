@@ -8,6 +8,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from irlx.blocks.link_frame import LinkFrame
+from irlx.cell.bound_frames import bound_frame_errors, link_frame
 from irlx.cell.cell import Cell, MotionDefaults, NamedFrame
 from irlx.cell.constraints import read_constraints
 from irlx.cell.errors import CellError
@@ -24,7 +26,7 @@ _KINDS = ("position", "speed", "acceleration")
 
 
 def build_cell(content: CellFile, robot_section: RobotSection, robot: RobotDescription, file: str) -> Cell:
-    """Cell of a robot. Raises CellError with every fault found: IRL604 to IRL606, IRL620,
+    """Cell of a robot. Raises CellError with every fault found: IRL604 to IRL606, IRL620, IRL647,
     and those of `read_scene`.
 
     Lists of wrong length stop the checks that need them, no others.
@@ -39,6 +41,7 @@ def build_cell(content: CellFile, robot_section: RobotSection, robot: RobotDescr
     _status_joints(robot_section, robot, file, errors)
     q = np.array([to_si(robot, joint, value) for joint, value in enumerate(start[:count])])
     errors += _frame_errors(content, file)
+    errors += bound_frame_errors(content, robot, file)
     scene, scene_warnings = read_scene(content, robot_section, robot, file, errors)
     constraints = read_constraints(content.constraint, robot, q if not errors else None, file, errors)
     if not errors:
@@ -55,12 +58,20 @@ def build_cell(content: CellFile, robot_section: RobotSection, robot: RobotDescr
         q,
         round(motion.tick_ms * 1e6),
         MotionDefaults(**motion.model_dump(exclude={"tick_ms"})),
-        {name: _frame(section) for name, section in content.frames.items()},
+        {name: _frame(section) for name, section in content.frames.items() if section.link is None},
         (*scene_warnings, *_warnings(limits, file)),
         *constraints,
         {name.casefold(): trace for name, trace in content.signals.inputs.items()},
         scene,
+        _link_frames(content),
     )
+
+
+def _link_frames(content: CellFile) -> dict[str, LinkFrame]:
+    """Frames that move with a link, by their names."""
+    frames = content.frames.items()
+    found = (link_frame(name, section, _frame(section).quaternion) for name, section in frames)
+    return {frame.name: frame for frame in found if frame is not None}
 
 
 def to_si(robot: RobotDescription, joint: int, value: float) -> float:

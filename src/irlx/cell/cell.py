@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from irlx.blocks.link_frame import LinkFrame
 from irlx.diagnostics import Diagnostic, Place
 from irlx.robot.description import RobotDescription
 from irlx.robot.limits import JointLimits
@@ -58,7 +59,8 @@ class Cell:
 
     `file` names the cell file for messages, `model` is the robot as the cell gives it; `relations` (SI) and
     `registered` constraints hold beside the tool pose. `inputs` are traces by casefolded name: times
-    in s, and the value that holds from each on, 0 or 1 for a BOOL.
+    in s, and the value that holds from each on, 0 or 1 for a BOOL. `frames` stand still, `link_frames` move
+    with a link of the robot.
     """
 
     file: str
@@ -75,3 +77,4 @@ class Cell:
     registered: tuple[RegisteredConstraint, ...] = ()
     inputs: Mapping[str, tuple[tuple[float, float], ...]] = field(default_factory=dict)
     scene: Scene = field(default_factory=Scene)
+    link_frames: Mapping[str, LinkFrame] = field(default_factory=dict)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Protocol
 from unicodedata import normalize
@@ -21,13 +22,18 @@ class Readable(Protocol):
         ...
 
 
-def frame_names(path: Path) -> tuple[str, ...]:
-    """Names under `[frames]`, normalised as names of programs are; none where the file is at fault.
+def frame_names(path: Path) -> Mapping[str, bool] | None:
+    """Names under `[frames]`, normalised as names of programs are, each with whether it moves with a link.
 
-    What is wrong with a cell is told when it is loaded; here it would only be told twice.
+    None where the file is at fault: what is wrong with a cell is told when it is loaded; here it would only
+    be told twice.
     """
-    frames = cell_table(path).get("frames")
-    return tuple(normalize("NFC", name) for name in frames) if isinstance(frames, dict) else ()
+    table = cell_table(path)
+    frames = table.get("frames", {})
+    if not table or not isinstance(frames, dict):
+        return None
+    moves = {name: isinstance(frame, dict) and "link" in frame for name, frame in frames.items()}
+    return {normalize("NFC", name): moving for name, moving in moves.items()}
 
 
 def cell_table(file: Readable) -> dict[str, Any]:

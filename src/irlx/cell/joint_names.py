@@ -17,14 +17,18 @@ def joint_names(path: Path) -> tuple[str, ...]:
 
     What is wrong with a cell is told when it is loaded; here it would only be told twice.
     """
-    asked = cell_table(path).get("robot")
+    table = cell_table(path)
+    asked = table.get("robot")
     if not isinstance(asked, dict) or not isinstance(asked.get("model"), str):
         return ()
     try:
         own, text = _model(asked["model"], path.parent)
         robot = {**own, **asked}
-        return read_urdf(text, robot.get("tip"), dict.fromkeys(robot.get("locked", {}), 0.0)).joint_names
-    except (OSError, ValueError, TypeError, RecursionError):
+        held = dict.fromkeys(robot.get("locked", {}), 0.0)
+        frames = table.get("frames", {}).values()
+        links = [*robot.get("hands", ()), *(frame["link"] for frame in frames if "link" in frame)]
+        return read_urdf(text, robot.get("tip"), held, dict.fromkeys(links)).joint_names
+    except (OSError, ValueError, TypeError, AttributeError, RecursionError):
         return ()
 
 

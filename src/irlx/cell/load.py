@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from irlx.cell.bound_frames import bound_links
 from irlx.cell.build import build_cell
 from irlx.cell.cell import Cell
 from irlx.cell.errors import CellError
@@ -17,7 +18,7 @@ def load_cell(path: Path) -> Cell:
     """Cell of a file. Raises CellError with every fault; IRL001, IRL002, IRL007 where it cannot be read."""
     content = read_cell_file(read_bytes(path), str(path))
     section = with_packaged_defaults(content.robot)
-    robot = load_robot(section, str(path), path.parent)
+    robot = load_robot(section, str(path), path.parent, bound_links(content))
     section = without_absent_joints(section, content.robot, robot)
     return build_cell(content, section, robot, str(path))
 

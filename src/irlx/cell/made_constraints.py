@@ -53,9 +53,11 @@ def constrained(plain: Kinematics, cell: Cell) -> Kinematics:
         *_of_links_and_joints(cell, plain),
         *(_registered(asked, cell, plain) for asked in cell.registered),
     ]
-    fault = _dependent(made, plain, cell)
-    if fault is not None:
-        raise CellError(fault)
+    # Poses in a frame that moves may leave what poses in the world do not.
+    views = [plain, *(plain.relative_to(frame) for frame in cell.link_frames.values())]
+    faults = [_dependent(made, view, cell) for view in views]
+    if None not in faults:
+        raise CellError([fault for fault in faults[:1] if fault is not None])
     return plain.constrained([one.constraint for one in made])
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from irlx.cell.errors import CellError
@@ -19,6 +21,8 @@ from irlx.diagnostics.diagnostic import near_matches
 from irlx.robot.description import RobotDescription
 from irlx.robot.urdf import read_urdf
 from irlx.robot.urdf_values import RobotModelError
+
+_NONE: Mapping[str, str] = MappingProxyType({})
 
 
 def with_packaged_defaults(asked: RobotSection) -> RobotSection:
@@ -58,10 +62,26 @@ def without_absent_joints(
     if asked.model is None or asked.model not in robot_names():
         return section
     own = named_section(asked.model)
-    names = read_urdf(named_urdf(asked.model, Place(asked.model)), own.tip).joint_names
+    urdf = named_urdf(asked.model, Place(asked.model))
+    names = read_urdf(urdf, own.tip, carriers=own.hands or ()).joint_names
+    if any(name not in names for name in robot.joint_names):
+        # Nothing is known of the joints of other hands than its own.
+        return _without_lists(section, asked)
     kept = [index for index, name in enumerate(names) if name in robot.joint_names]
     lists = _reduced(own, ("start", "weights"), asked, kept)
     limits = _reduced(own.limits, ("position", "speed", "acceleration"), asked.limits, kept)
+    return section.model_copy(update={**lists, "limits": section.limits.model_copy(update=limits)})
+
+
+def _without_lists(section: RobotSection, asked: RobotSection) -> RobotSection:
+    """The section without lists that the cell does not give itself."""
+    lists = {name: None for name in ("start", "weights") if name not in asked.model_fields_set}
+    kinds = ("position", "speed", "acceleration")
+    limits = {
+        name: None
+        for name in kinds
+        if name not in asked.limits.model_fields_set and isinstance(getattr(section.limits, name), list)
+    }
     return section.model_copy(update={**lists, "limits": section.limits.model_copy(update=limits)})
 
 
@@ -75,12 +95,15 @@ def _reduced(own: Section, names: tuple[str, ...], asked: Section, kept: list[in
     return found
 
 
-def load_robot(section: RobotSection, file: str, folder: Path) -> RobotDescription:
+def load_robot(
+    section: RobotSection, file: str, folder: Path, bound: Mapping[str, str] = _NONE
+) -> RobotDescription:
     """Description of the robot a cell names; paths are relative to `folder`, the cell's own.
 
-    Raises CellError: IRL610 no model, IRL611 unknown name or missing file, IRL612 a URDF that
-    cannot be used, IRL613 fewer axes than its task has
-    coordinates, IRL614 a robot of an extra that is not installed; those of `with_origins` and `with_task`.
+    Joints that lead to its other hands and to the links `bound`, by the keys of the cell that name them, are
+    axes as well. Raises CellError: IRL610 no model, IRL611 unknown name or missing file, IRL612 a URDF that
+    cannot be used, IRL613 fewer axes than its task has coordinates, IRL614 a robot of an extra that is not
+    installed, IRL643 a link that the robot does not have; those of `with_origins` and `with_task`.
     """
     place = Place(file, key="robot.model")
     model = section.model
@@ -89,9 +112,10 @@ def load_robot(section: RobotSection, file: str, folder: Path) -> RobotDescripti
     text = named_urdf(model, place) if model in robot_names() else _urdf_file(model, folder, place)
     # Joint kinds decide the units of locked values, so the model is read before they are known.
     held = _read(text, section, dict.fromkeys(section.locked, 0.0), file)
+    carriers = _carriers(section, held, file, bound)
     slides = {joint.name for joint in held.joints if joint.is_prismatic}
     locked = {name: value * (1e-3 if name in slides else _DEGREE) for name, value in section.locked.items()}
-    robot = with_mesh_files(_read(text, section, locked, file), urdf_folder(model, folder))
+    robot = with_mesh_files(_read(text, section, locked, file, carriers), urdf_folder(model, folder))
     return with_task(with_origins(robot, section, file), _own_task(section), file)
 
 
@@ -105,13 +129,43 @@ def _own_task(section: RobotSection) -> RobotSection:
 
 
 _OF_TASK = ("task", "task_frame", "free")
+
+
+def _carriers(
+    section: RobotSection, robot: RobotDescription, file: str, bound: Mapping[str, str]
+) -> tuple[str, ...]:
+    """Links whose joints are axes beside those of the tip. Raises CellError, IRL643, for unknown ones."""
+    hands = section.hands
+    if hands is None and section.model in robot_names():
+        hands = named_section(section.model or "").hands
+    wanted = {f"robot.hands[{number}]": link for number, link in enumerate(hands or (), 1)} | dict(bound)
+    links = (robot.root, *(joint.child for joint in robot.joints))
+    known = ", ".join(links)
+    unknown = [
+        report(
+            "IRL643", Place(file, key=key), key=key, name=link, near=near_matches(link, links), known=known
+        )
+        for key, link in wanted.items()
+        if link not in links
+    ]
+    if unknown:
+        raise CellError(unknown)
+    return tuple(dict.fromkeys(wanted.values()))
+
+
 _DEGREE = 0.017453292519943295
 
 
-def _read(text: str, section: RobotSection, locked: dict[str, float], file: str) -> RobotDescription:
+def _read(
+    text: str,
+    section: RobotSection,
+    locked: dict[str, float],
+    file: str,
+    carriers: tuple[str, ...] = (),
+) -> RobotDescription:
     """Robot of a URDF with joints held at `locked` (rad or m). Raises CellError, IRL612, at its key."""
     try:
-        return read_urdf(text, section.tip, locked)
+        return read_urdf(text, section.tip, locked, carriers)
     except RobotModelError as cause:
         subject = cause.subject
         key = f"robot.locked.{subject}" if subject in locked else _faulty_key(cause, section)

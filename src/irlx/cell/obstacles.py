@@ -66,6 +66,9 @@ def _base(section: ObstacleSection, frames: Frames, findings: Findings) -> Place
     if name is None:
         return Placement()
     frame = frames.get(name.casefold())
+    if frame is not None and frame[1].link is not None:
+        findings.error("IRL646", "frame", name=frame[0], link=frame[1].link)
+        return Placement()
     if frame is not None:
         return _pose(frame[1])
     if name.casefold() != WORLD:

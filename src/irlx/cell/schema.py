@@ -115,7 +115,7 @@ class OriginSection(Section):
 
 
 class RobotSection(Section):
-    """The robot: model, tool frame, locked joints, origins of joints, its task, posture and weights.
+    """The robot: model, tool frame, other hands, locked joints, origins of joints, task, posture, weights.
 
     `task` are coordinates of the tool pose in the frame of the link `task_frame`, by default the tool's own;
     `free` are turns that are left to the joints.
@@ -131,6 +131,7 @@ class RobotSection(Section):
     start: list[Number] | None = None
     weights: list[Positive] | None = None
     status_joints: list[str] = Field(default_factory=list)
+    hands: list[str] | None = None
     limits: LimitsSection = Field(default_factory=LimitsSection)
     self_collision: SelfCollisionSection = Field(default_factory=SelfCollisionSection)
 
@@ -154,10 +155,11 @@ class MotionSection(Section):
 
 
 class FrameSection(Section):
-    """A named pose: mm, and degrees about the fixed x, y, z axes."""
+    """A named pose: mm, and degrees about the fixed x, y, z axes; of a `link` of the robot, in its frame."""
 
     xyz: Vector = Field(default_factory=lambda: [0.0, 0.0, 0.0])
     rpy: Vector = Field(default_factory=lambda: [0.0, 0.0, 0.0])
+    link: str | None = None
 
 
 class SignalsSection(Section):

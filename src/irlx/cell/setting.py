@@ -33,7 +33,17 @@ def setting_of(cell: Cell) -> Setting:
     axes = cell.robot.axes
     slides, weights = tuple(axis.is_prismatic for axis in axes), tuple(map(float, cell.weights))
     obstacles = {normalize("NFC", name).casefold(): name for name in cell.scene.names}
-    return Setting(cell.robot.joint_names, slides, defaults, poses, weights, _robot_names(cell), obstacles)
+    moving = {normalize("NFC", name).casefold(): frame for name, frame in cell.link_frames.items()}
+    return Setting(
+        cell.robot.joint_names,
+        slides,
+        defaults,
+        poses,
+        weights,
+        _robot_names(cell),
+        obstacles,
+        moving,
+    )
 
 
 def _robot_names(cell: Cell) -> tuple[str, ...]:

@@ -50,8 +50,8 @@ class Designators:
         self._expressions = expressions
 
     def stored(self, name: tree.Name) -> Variable | Local:
-        """The variable of a name. Raises InterpreterError: IRL201, with near matches; IRL590 for what the
-        language has and this version does not execute."""
+        """The variable of a name. Raises InterpreterError: IRL201, with near matches; IRL291 for a frame
+        that moves; IRL590 for what the language has and this version does not execute."""
         context = self._expressions.context
         scope, source = context.scope, context.source
         found = scope.found(name.key)
@@ -66,6 +66,8 @@ class Designators:
         port = self.signal(name)
         if port is not None:
             return port
+        if name.key in context.setting.frames:
+            raise fail("IRL291", source, name.span, name=name.name)
         what = system_name(name)
         if what:
             raise fail("IRL590", source, name.span, what=what)

@@ -17,6 +17,7 @@ from irlx.blocks import (
 )
 from irlx.interpreter.code import Assembler
 from irlx.interpreter.expressions import Expressions
+from irlx.interpreter.frames import base_of, link_frame_of
 from irlx.interpreter.law import Law
 from irlx.interpreter.motion_parts import Make, MotionParts, NextId
 from irlx.interpreter.moves import Moves
@@ -111,9 +112,12 @@ class Motion(MotionParts):
     def _reconfigure(self, node: tree.Reconfiguration) -> None:
         origin, law = self._origin(node), Law(node, self._expressions)
         posture = self._expressions.one_of(node.target, self._postures())
+        name = None if node.frame is None else node.frame.name
+        frame = link_frame_of(base_of(name, self._context, node))
 
         def make(values: list[Any], next_id: NextId) -> tuple[Block]:
-            target = self._posture(values[0])
-            return (ReconfigureBlock(id=next_id(), origin=origin, target=target, law=law.latched(())),)
+            target, bounds = self._posture(values[0]), law.latched(())
+            block = ReconfigureBlock(id=next_id(), origin=origin, target=target, law=bounds, frame=frame)
+            return (block,)
 
         self._emit(node, (posture,), make)

@@ -24,6 +24,7 @@ from irlx.blocks import (
 from irlx.interpreter.base import Base
 from irlx.interpreter.compiled import Compiled, failing
 from irlx.interpreter.errors import fail
+from irlx.interpreter.frames import base_of, link_frame_of, told_in
 from irlx.interpreter.law import Law, Passing
 from irlx.interpreter.motion_parts import MotionParts, NextId, Wanted
 from irlx.interpreter.parameters import Latched, choice_of, criterion_params, not_negative, word
@@ -51,7 +52,8 @@ class Moves(MotionParts):
         wanted, slices = _in_order({"law": law.parts, "passing": passing.parts, **self._further(node)})
         parts = self._expressions.operands(wanted)
         self._count_postures(node, parts[slices["targets"]], parts[slices["postures"]])
-        base = Base(self._context, node)
+        base = base_of(node.frame, self._context, node)
+        frame = link_frame_of(base)
 
         def make(values: list[Any], next_id: NextId) -> list[Block]:
             at = {name: values[part] for name, part in slices.items()}
@@ -60,6 +62,7 @@ class Moves(MotionParts):
                 "blend": passing.latched(at["passing"]),
                 "limits": tuple(self._limits(node, at["limits"])),
                 "criteria": tuple(self._criteria(node, at["criteria"])),
+                "frame": frame,
                 "tolerance": self._bands(node, at["tolerance"]),
             }
             return [
@@ -169,7 +172,8 @@ class Moves(MotionParts):
         self._warn_of_status(node, at["targets"])
         turned = increment_of if node.incremental else target_of
         setting = self._context.setting
-        targets = [turned(value, base, setting) for value in _opened(at["targets"])]
+        frame = link_frame_of(base)
+        targets = [told_in(turned(value, base, setting), frame) for value in _opened(at["targets"])]
         postures = [self._posture(value) for value in _opened(at["postures"])]
         if node.path:
             course = PathCourse(tuple(targets[:-1]), tuple(postures[:-1])) if len(targets) > 1 else None

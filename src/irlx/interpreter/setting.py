@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from irlx.blocks import LinkFrame
+
 Default = float | bool | str
 
 SYSTEM_REALS = (
@@ -40,7 +42,8 @@ class Setting:
     %, mm/s3, mm. `poses` are named poses of the cell in the root frame of the robot: position in mm,
     quaternion scalar first. `weights` are those of the joints, 1 each where none are given. `robots` are the
     names by which ROBOT may call the robot. `obstacles` are those of the cell, and its groups, by casefolded
-    name as the cell writes them; None where nobody knows the cell, and any name may be one.
+    name as the cell writes them; None where nobody knows the cell, and any name may be one. `frames` move
+    with a link of the robot, by casefolded name.
     """
 
     joint_names: tuple[str, ...]
@@ -52,6 +55,7 @@ class Setting:
     weights: tuple[float, ...] = ()
     robots: tuple[str, ...] = ()
     obstacles: Mapping[str, str] | None = None
+    frames: Mapping[str, LinkFrame] = field(default_factory=dict)
 
     def default(self, name: str) -> Default:
         """What the system variable of a name starts with."""

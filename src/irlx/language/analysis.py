@@ -41,8 +41,9 @@ Resolver: TypeAlias = "Callable[[str], Analysis | None]"
 Raises ModuleProblem for one that cannot be used.
 """
 
-CellNames: TypeAlias = "Callable[[tree.Program | tree.Module], Collection[str]]"
-"""Gives the names that the cell of a program adds to it and its modules, those of its frames."""
+CellNames: TypeAlias = "Callable[[tree.Program | tree.Module], Collection[str] | None]"
+"""Gives the names that the cell of a program adds to it and its modules, those of its frames, or None where
+no cell is known. A mapping says of each whether it moves with a link of the robot."""
 
 
 CellJoints: TypeAlias = "Callable[[tree.Program | tree.Module], tuple[str, ...]]"
@@ -104,11 +105,11 @@ def analyse(
     if parsed.tree is None:
         return Analysis(source, None, in_order(parsed.findings, source, ()), parsed.comments)
     text = parsed.tree if isinstance(parsed.tree, tree.Program | tree.Module) else None
-    given = cell_names(text) if cell_names and text is not None else ()
+    given = cell_names(text) if cell_names and text is not None else None
     known_obstacles = obstacles(text) if obstacles and text is not None else None
     imports = imports_of(parsed.tree, source, data_lists)
     names = _joint_names(parsed.tree, joints)
-    scope, findings = check_names(parsed.tree, source, given, imports, complete=parsed.complete)
+    scope, findings = check_names(parsed.tree, source, given or (), imports, complete=parsed.complete)
     findings += _static_findings(parsed.tree, source)
     modules, on_imports = _imported(parsed.tree, source, resolver)
     typed = check_types(

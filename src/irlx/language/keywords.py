@@ -12,7 +12,7 @@ from irlx.language.grammar_text import grammar_text
 __all__ = ["NAMES_TOO", "is_name", "keyword_table"]
 
 # The grammar's rule `name` admits these; a test compares the two.
-NAMES_TOO = frozenset({"AT", "SEC", "STEP", "TIMEOUT", "TO", "DATALIST", "SPECIFICATION"})
+NAMES_TOO = frozenset({"AT", "FRAME", "SEC", "STEP", "TIMEOUT", "TO", "DATALIST", "SPECIFICATION"})
 
 _NAME = re.compile(r"[^\W\d_]\w*")
 _DECLARE = re.compile(r"^%declare\s+(.*)$", re.MULTILINE)

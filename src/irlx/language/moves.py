@@ -18,8 +18,15 @@ def check_move(move: tree.Move, source: SourceText) -> list[Diagnostic]:
 
 
 def _order(move: tree.Move) -> Iterator[tuple[str, Span, dict[str, Any]]]:
-    """Targets come first, then parameters, then clauses; the first offender is enough."""
-    firsts = [part[0].span.start for part in (move.params, move.clauses) if part]
+    """Targets come first, then IN FRAME, parameters, clauses; the first offender is enough."""
+    if len(move.frames) > 1:
+        yield "IRL114", move.frames[1].span, {"item": "a second IN FRAME"}
+        return
+    behind = [part[0].span.start for part in (move.params, move.clauses) if part]
+    if any(frame.span.start > first for frame in move.frames for first in behind):
+        yield "IRL114", move.frames[0].span, {"item": "IN FRAME"}
+        return
+    firsts = [part[0].span.start for part in (move.frames, move.params, move.clauses) if part]
     for target in move.targets:
         if any(target.span.start > first for first in firsts):
             yield "IRL114", target.span, {"item": "this target"}

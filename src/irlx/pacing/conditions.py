@@ -59,6 +59,14 @@ def broken_condition(q: Array, kinematics: Kinematics) -> tuple[int, Constraint,
     return None
 
 
+def check_implied(q: Array, kinematics: Kinematics, place: Place) -> None:
+    """Raise PacingError, IRL441, where rows (N, n) led along poses break a constraint that these imply."""
+    for constraint in kinematics.implied:
+        broken = max(float(np.linalg.norm(constraint.residual(posture))) for posture in q)
+        if not broken <= CONDITION:
+            raise PacingError(report("IRL441", place, name=constraint.name, broken=f"{broken:.3g}"))
+
+
 def check_conditions(q: Array, kinematics: Kinematics, place: Place) -> None:
     """Raise PacingError, IRL351, where rows (N, n) of a motion of the joints break a constraint."""
     found = broken_condition(q, kinematics)

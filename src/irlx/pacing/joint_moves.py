@@ -88,7 +88,7 @@ def asked_after(situation: Situation, block: MoveBlock) -> Array | None:
 def _leg(situation: Situation, block: MoveBlock, in_force: LimitsInForce) -> JointLeg:
     """A PTP as a motion to a posture. Raises PacingError where the joints may not go there."""
     place = situation.locate(block.origin)
-    end = _end_posture(situation, block, in_force, place)
+    end = _end_posture(situation.in_frame(block.frame, place), block, in_force, place)
     # Degrees in a program come back as radians that may be off by the last bits: nothing moves for that.
     end = np.where(np.abs(end - situation.q) <= SAME_VALUE, situation.q, end)
     robot = situation.robot
@@ -144,7 +144,10 @@ def _motion(
 
 def _programmed(situation: Situation, block: MoveBlock) -> Pose | None:
     """The pose of a PTP WITH TOLERANCE, off which the tool may stand."""
-    target = None if block.tolerance is None else pose_target(block.target, situation.pose)
+    if block.tolerance is None:
+        return None
+    situation = situation.in_frame(block.frame, situation.locate(block.origin))
+    target = pose_target(block.target, situation.pose)
     return None if target is None else pose_of(target, situation.pose)
 
 

@@ -91,6 +91,8 @@ _TOO_MANY = f"at most {WINDOW} moves are joined"
 
 def _apart(first: MoveBlock, second: MoveBlock) -> str:
     """Why two moves cannot be joined whatever their geometry, or ''."""
+    if first.frame != second.frame:
+        return "the two moves lead the tool in different frames"
     for move in (first, second):
         if move.limits or move.criteria or move.tolerance is not None:
             return "a WITH clause holds for one of the two moves alone"
@@ -106,6 +108,8 @@ def _apart(first: MoveBlock, second: MoveBlock) -> str:
 def _apart_in_kind(first: MoveBlock, second: MoveBlock) -> str:
     """Why a move of the joints and one along a path cannot be joined, or ''."""
     for move in (first, second):
+        if move.frame is not None:
+            return "beside a PTP a move in a frame that moves with a link starts and ends at rest"
         if isinstance(move.target, JointIncrement):
             return "joint increments count from the posture in which the move before has ended"
         if move.law.duration is not None:

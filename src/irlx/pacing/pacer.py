@@ -24,6 +24,7 @@ from irlx.blocks import (
     CriterionBlock,
     FreezeBlock,
     LimitSwitchBlock,
+    LinkFrame,
     MachineQuestion,
     MoveBlock,
     MoveKind,
@@ -43,6 +44,7 @@ from irlx.pacing.beyond import posture_beyond, ticks_beyond
 from irlx.pacing.carried import Carried, are_of_one_kind, crossed, passes
 from irlx.pacing.clearance_answers import Clearances, pairs_of
 from irlx.pacing.executed import Executed
+from irlx.pacing.frames import seen_from
 from irlx.pacing.inputs import answer_of_inputs
 from irlx.pacing.joint_moves import move_joints
 from irlx.pacing.kept_clear import kept_clear
@@ -92,8 +94,9 @@ class Pacer:
         self._clearance = kept_clear(setup.kinematics, setup.scene, self.options)
         self._rest: MoveBlock | None = None
         self._constraints = setup.kinematics.constraints
+        self._programmed_in: LinkFrame | None = None
         self._programmed: Pose | None = None
-        """Where the path of the last move ended, if it was one WITH TOLERANCE."""
+        """Where the path of the last move ended in its frame, if it was one WITH TOLERANCE."""
         self._asked: Array | None = None
         self._looked_at = set[int]()
 
@@ -119,13 +122,14 @@ class Pacer:
             time = self.tick * self.setup.dt
             return self._distances.answer(question, time, self.locate(question.origin))
         if isinstance(question, AskAvoidingPosture):
-            return avoiding_posture(question, self._situation)
+            place = self.locate(question.origin)
+            return avoiding_posture(question, self._situation.in_frame(None, place))
         if isinstance(question, AskLastMove):
             return answer_of_last_move(*self._last_way)
         if isinstance(question, AskJointBounds):
             return answer_of_bounds(self._situation.in_force().limits)
-        situation = self._situation
         target, place = PoseTarget(question.position, question.orientation), self.locate(question.origin)
+        situation = self._situation.in_frame(None, place)
         near = np.array(question.near) if isinstance(question, AskNearestPosture) else None
         return tuple(posture_of_pose(target, near, situation, situation.in_force(), place).tolist())
 
@@ -154,6 +158,7 @@ class Pacer:
             self.notes,
             self._clear_from_now,
             self._programmed,
+            self._programmed_in,
             self._asked,
             self._looked_at,
         )
@@ -254,7 +259,8 @@ class Pacer:
 
         For a dry run alone. Raises PacingError or MotionError where no posture is there; it stays then.
         """
-        situation, place = self._situation, self.locate(move.origin)
+        place = self.locate(move.origin)
+        situation = self._situation.in_frame(move.frame, place)
         end = posture_beyond(situation, move, situation.in_force(move.limits), place)
         self.tick += ticks_beyond(situation, move, place)
         self.q, self._programmed, self._asked = end, None, None
@@ -305,7 +311,10 @@ class Pacer:
             pairs_of(block.name, self.setup.kinematics, self.setup.scene, place)
 
     def _freeze(self, block: FreezeBlock, place: Place) -> None:
-        """From now on ticks meet only what the other joints can break. Raises PacingError as checks do."""
+        """From now on ticks meet only what the other joints can break.
+
+        Raises PacingError: IRL346 for a joint that the robot does not have, IRL347 for too many.
+        """
         check_frozen(block, self._robot, place)
         free = np.ones(self.q.size, dtype=bool)
         free[[number - 1 for number in block.joints]] = False
@@ -314,7 +323,7 @@ class Pacer:
         if constraints != kinematics.constraints:
             kinematics = kinematics.constrained(constraints)
         if not self.setup.may_free:
-            check_spare(self.options.after(block, self.q), kinematics, None, self.locate)
+            check_spare(self.options.after(block, self.q), kinematics.of_pose, None, self.locate)
         if kinematics is not self.setup.kinematics:
             self._setup = replace(self._setup, kinematics=kinematics)
             self._solver = self._new_solver()
@@ -334,9 +343,10 @@ class Pacer:
         if block.kind is MoveKind.PTP:
             motion = move_joints(situation, moves, in_force)
         else:
-            check_spare(situation.options, self.setup.kinematics, block.tolerance, self.locate)
+            kinematics = seen_from(self.setup.kinematics, block.frame, place)
+            check_spare(situation.options, kinematics, block.tolerance, self.locate)
             motion = move_along_path(situation, moves, in_force)
-        self._programmed = motion.programmed
+        self._programmed, self._programmed_in = motion.programmed, block.frame
         return motion
 
     def _note_asked(self, motion: Motion) -> None:
@@ -386,8 +396,9 @@ class Pacer:
         return self._moved(rows, self._situation.in_force())
 
     def _reconfigure(self, block: ReconfigureBlock) -> MotionRows | None:
-        place, situation = self.locate(block.origin), self._situation
-        check_spare(situation.options, self.setup.kinematics, None, self.locate)
+        place = self.locate(block.origin)
+        situation = self._situation.in_frame(block.frame, place)
+        check_spare(situation.options, situation.kinematics, None, self.locate)
         in_force = situation.in_force()
         check_inside(self.q, self._robot, in_force.limits, place)
         konf = asked_posture(block.target, situation, in_force, place)

@@ -14,7 +14,7 @@ from irlx.motion.errors import MotionError
 from irlx.motion.plan_chain import Leg, PlannedChain, lost_blend, plan_chain
 from irlx.motion.plan_circle import circle_path
 from irlx.motion.whole_ticks import ticks_of_move
-from irlx.pacing.conditions import broken_condition, check_targets
+from irlx.pacing.conditions import broken_condition, check_implied, check_targets
 from irlx.pacing.demand import Demand
 from irlx.pacing.drawn_to import check_postures, postures_asked, term_of, warn_of_posture_left
 from irlx.pacing.errors import PacingError
@@ -41,9 +41,10 @@ _TURN_RULES = 1e3
 def move_along_path(situation: Situation, moves: Sequence[MoveBlock], in_force: LimitsInForce) -> Motion:
     """Carry out the first stop-to-stop motion of moves along paths, those first that pass their targets.
 
-    Where the joined moves cannot be done, the first one is done alone. Raises PacingError or MotionError at
-    its place.
+    All go in the frame of the first one. Where the joined moves cannot be done, that one is done alone.
+    Raises PacingError or MotionError at its place.
     """
+    situation = situation.in_frame(moves[0].frame, situation.locate(moves[0].origin))
     check_postures(situation, moves[0], in_force)
     start = start_of(situation, moves[0].tolerance)
     legs = _legs(situation, moves, start, in_force.limits)
@@ -142,6 +143,7 @@ def _paced(
         )
         raise PacingError(explain_failure(paced, around, plan, situation.tick + 1, goal, place))
     check_on_path(asked, paced.q, paced.demands, (situation.kinematics, in_force.limits, situation.free))
+    check_implied(paced.q, situation.kinematics, place)
     return narrowed(_rows(situation, block, plan, paced), found.freed)
 
 
@@ -213,17 +215,20 @@ def _nearest(situation: Situation, paced: PacedPath) -> NearestRows | None:
 
 
 def _tool(situation: Situation, paced: PacedPath) -> tuple[Array, Array, Array, Array]:
-    """Distance (m) and angle (rad) of rows from the demands, and their tool poses.
+    """Distance (m) and angle (rad) of rows from the demands, and their tool poses in the world.
 
     A dry run, whose rows nobody gets, takes the demands for them.
     """
-    if situation.setup.resolution.is_coarse:
-        rotation, position = _wanted(paced.demands)
-        nothing = np.zeros(len(paced.q))
-        return nothing, nothing, position, rotation
     kinematics = situation.kinematics
+    in_world = kinematics.world is kinematics
+    if situation.setup.resolution.is_coarse:
+        nothing = np.zeros(len(paced.q))
+        poses = _wanted(paced.demands) if in_world else kinematics.world.tool_poses(paced.q)
+        return nothing, nothing, poses[1], poses[0]
     rotation, position = kinematics.tool_poses(paced.q)
     distance, angle = kinematics.errors(paced.q, _wanted(paced.demands))
+    if not in_world:
+        rotation, position = kinematics.world.tool_poses(paced.q)
     return distance, angle, position, rotation
 
 

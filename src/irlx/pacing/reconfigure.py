@@ -153,6 +153,8 @@ def _motion_rows(
     rotation, position = kinematics.tool_poses(held)
     wanted = np.tile(start_rotation, (len(held), 1, 1)), np.tile(start_position, (len(held), 1))
     distance, angle = kinematics.errors(held, wanted)
+    if kinematics.world is not kinematics:
+        rotation, position = kinematics.world.tool_poses(held)
     return MotionRows(
         block,
         first_tick,

@@ -9,10 +9,11 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.blocks import LimitClause, Origin
+from irlx.blocks import LimitClause, LinkFrame, Origin
 from irlx.diagnostics import Diagnostic, Place
 from irlx.pacing.correction.share import planned_limits
 from irlx.pacing.demand import DemandModifier
+from irlx.pacing.frames import seen_from
 from irlx.pacing.freed import Freed
 from irlx.pacing.inputs import Inputs
 from irlx.pacing.notes import Notes
@@ -77,6 +78,7 @@ class Situation:
     notes: Notes
     clearance: Clearance | None = None
     programmed: tuple[Array, Array] | None = None
+    programmed_in: LinkFrame | None = None
     asked: Array | None = None
     looked_at: set[int] = field(default_factory=set)
     freed: Freed | None = None
@@ -103,9 +105,23 @@ class Situation:
 
     @property
     def pose(self) -> tuple[Array, Array]:
-        """Rotation (3, 3), or that asked for, and position (3,) m of the tool in the world."""
+        """Rotation (3, 3), or that asked for, and position (3,) m of the tool in the world, or in
+        the frame of the situation."""
         rotation, position = self.kinematics.tool_pose(self.q)
         return (rotation if self.asked is None else self.asked), position
+
+    def in_frame(self, frame: LinkFrame | None, place: Place) -> Situation:
+        """The same for motions to poses, which are told in a frame that moves with a link or in the world.
+
+        Raises PacingError: IRL515 where the robot has no such link.
+        """
+        kinematics = seen_from(self.kinematics, frame, place)
+        programmed = self.programmed if self.programmed_in == frame else None
+        if kinematics is self.kinematics and programmed is self.programmed:
+            return self
+        setup = replace(self.setup, kinematics=kinematics)
+        solver = type(self.solver)(kinematics, self.qp)
+        return replace(self, setup=setup, solver=solver, programmed=programmed)
 
     def in_force(self, clauses: Iterable[LimitClause] = ()) -> LimitsInForce:
         """Joint limits of a motion with its own clauses."""

@@ -177,7 +177,7 @@ def narrowed(rows: MotionRows, freed: Freed | None) -> MotionRows:
         return rows
     joints = freed.joints
     q = np.ascontiguousarray(rows.q[:, joints])
-    rotation, position = freed.robot.tool_poses(q)
+    rotation, position = freed.robot.world.tool_poses(q)
     path = rows.path
     if path is not None:
         own = {int(place): number for number, place in enumerate(joints)}
@@ -224,7 +224,10 @@ def _kinematics(kinematics: Kinematics, bands: dict[int, float]) -> Kinematics:
         axis = (back[0], back[1], back[2])
         joints.append(Joint(name, kind, joints[-1].child, name, axis=axis))
     wide = replace(robot, joints=(*robot.joints, *joints), tip=joints[-1].child)
-    return Kinematics(wide, [VirtualConstraint(item, _real(wide, robot)) for item in kinematics.constraints])
+    # What the exact pose would imply is a condition of its own where the pose has room.
+    conditions = (*kinematics.constraints, *kinematics.implied)
+    found = Kinematics(wide, [VirtualConstraint(item, _real(wide, robot)) for item in conditions])
+    return found.of_pose if kinematics.frame is None else found.relative_to(kinematics.frame).of_pose
 
 
 def _real(wide: RobotDescription, robot: RobotDescription) -> NDArray[np.int64]:

@@ -10,7 +10,7 @@ from irlx.blocks import MoveBlock, ReconfigureBlock
 from irlx.promises import PATH_POSITION
 from irlx.report.clearances import SmallestClearance, clearances
 from irlx.report.events import ActiveSpans, LimitActive, Slowed
-from irlx.report.returns import Returns
+from irlx.report.returns import Returns, Seen
 from irlx.report.segment import Segment
 from irlx.report.summary import Closure, LimitUse, Summary, closure, limit_uses
 from irlx.streams.joint_stream import StreamHeader
@@ -20,11 +20,11 @@ from irlx.streams.rates import Rates
 class Figures:
     """Gathers events and the summary of a run from its segments."""
 
-    def __init__(self, header: StreamHeader) -> None:
+    def __init__(self, header: StreamHeader, seen: Seen | None = None) -> None:
         self._header = header
         self._rates = Rates(header)
         self._spans = ActiveSpans(header.joint_names, header.dt)
-        self._returns = Returns(header.joint_names)
+        self._returns = Returns(header.joint_names, seen)
         self._slowed: list[Slowed] = []
         self._worst: dict[str, LimitUse] = {}
         self._rows = self._moves = self._iterations = self._planned = 0

@@ -13,6 +13,7 @@ from irlx.diagnostics import Diagnostic
 from irlx.report.figures import Figures
 from irlx.report.outcome import Outcome
 from irlx.report.recorder import Recorder
+from irlx.report.returns import Seen
 from irlx.report.segment import Segment
 from irlx.report.uninterrupted import uninterrupted
 from irlx.streams.error import StreamError
@@ -37,9 +38,10 @@ class FileRecording(Recorder):
         start: Array,
         pose: tuple[Array, Array],
         outputs: Sequence[Path],
+        seen: Seen | None = None,
     ) -> None:
         """Begin at posture `start` (n,), the tool at `pose`: rotation (3, 3), position (3,) m, world."""
-        self._figures, self._files = Figures(header), _Files(header, outputs)
+        self._figures, self._files = Figures(header, seen), _Files(header, outputs)
         try:
             super().__init__(header, start, *pose, (self._figures, self._files))
         except BaseException:

@@ -9,6 +9,7 @@ from irlx.diagnostics import Diagnostic
 from irlx.report.clearances import clearances
 from irlx.report.figures import Figures
 from irlx.report.recorder import Recorder
+from irlx.report.returns import Seen
 from irlx.report.run import Run
 from irlx.report.segment import Segment
 from irlx.streams.joint_stream import JointStream, StreamHeader
@@ -19,9 +20,16 @@ Array = NDArray[np.float64]
 class Recording(Recorder):
     """All rows of a run, in memory."""
 
-    def __init__(self, header: StreamHeader, start: Array, rotation: Array, position: Array) -> None:
+    def __init__(
+        self,
+        header: StreamHeader,
+        start: Array,
+        rotation: Array,
+        position: Array,
+        seen: Seen | None = None,
+    ) -> None:
         """Begin at posture `start` (n,), the tool at `rotation` (3, 3), `position` (3,) m, in the world."""
-        self._figures, self._kept = Figures(header), _Kept()
+        self._figures, self._kept = Figures(header, seen), _Kept()
         super().__init__(header, start, rotation, position, (self._figures, self._kept))
 
     def finish(self, complete: bool, diagnostics: tuple[Diagnostic, ...]) -> Run:

@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.blocks import CriterionBlock, CyclicBlock, FreezeBlock, MoveBlock, ObstacleBlock, SignalBlock
+from irlx.blocks import (
+    CriterionBlock,
+    CyclicBlock,
+    FreezeBlock,
+    LinkFrame,
+    MoveBlock,
+    ObstacleBlock,
+    SignalBlock,
+)
 from irlx.promises import CLOSURE, RETURN
 from irlx.report.events import SOURCES
 from irlx.report.segment import Segment
@@ -16,10 +25,13 @@ from irlx.streams.joint_stream import BlockRecord
 
 Array = NDArray[np.float64]
 
+Seen: TypeAlias = "Callable[[LinkFrame, Array], Array]"
+"""Position (m) and quaternion, (7,), of the tool in posture q (n,) as a frame sees it."""
+
 
 @dataclass(frozen=True)
 class Return:
-    """A move that ended at the tool pose of CYCLICSTART.
+    """A move that ended at the tool pose of CYCLICSTART, in its own frame.
 
     `line` of the move, `tick` of its end, `since` the line of CYCLICSTART; `left` (n,) is the posture then
     less the stored one, rad or m; `held` says what stood in the way, '' where nothing did.
@@ -73,11 +85,13 @@ class _Standing:
 class Returns:
     """Finds the returns of a run while it goes on.
 
-    A move has ended when the next block begins: until then its last row is remembered.
+    A move has ended when the next block begins: until then its last row is remembered. Moves in a frame that
+    moves with a link come back to the pose that it has `seen` at CYCLICSTART.
     """
 
-    def __init__(self, joint_names: Sequence[str]) -> None:
+    def __init__(self, joint_names: Sequence[str], seen: Seen | None = None) -> None:
         self._names = tuple(joint_names)
+        self._seen = seen
         self._found: list[Return] = []
         self._standing = _Standing()
         self._stored: tuple[Array, Array] | None = None
@@ -119,7 +133,10 @@ class Returns:
         if cyclic is None or move is None or end is None or self._stored is None:
             return []
         tick, q, tool, flags = end
-        if not _same_pose(tool, self._stored[1]):
+        poses = tool, self._stored[1]
+        if move.frame is not None and self._seen is not None:
+            poses = self._seen(move.frame, q), self._seen(move.frame, self._stored[0])
+        if not _same_pose(*poses):
             return []
         left = q - self._stored[0]
         held = _held(self._standing, move, flags, left, self._names)

@@ -82,9 +82,11 @@ class Inertial:
 class RobotDescription:
     """A robot as a tree of links and joints, with the tool frame `tip` that moves address.
 
-    `joints` holds all joints of the tree; those between `root` and `tip` that move, are not `locked` and
-    follow no other joint are the robot's axes, in order from the root. `locked` maps a joint name to the
-    value it is held at; moving joints off the chain are held at their locked value or zero. `solids` are the
+    `joints` holds all joints of the tree; those that move, are not `locked` and follow no other joint are the
+    robot's axes where they lie between `root` and `tip`, or between `root` and one of the `carriers`: links
+    that carry something of their own, as another hand does. Axes come depth first, branches in the order of
+    `joints`; along a plain chain that is the order from the root. `locked` maps a joint name to the value
+    it is held at; moving joints that are no axes are held at their locked value or zero. `solids` are the
     shapes of each link that others must not touch, in the link's frame.
 
     `coordinates` of the tool pose are those of the robot's task: along and about the axes of the tool frame,
@@ -102,22 +104,42 @@ class RobotDescription:
     solids: Mapping[str, tuple[Solid, ...]] = field(default_factory=dict)
     task_frame: str | None = None
     free: tuple[str, ...] = ()
+    carriers: tuple[str, ...] = ()
 
     @cached_property
     def chain(self) -> tuple[Joint, ...]:
         """All joints from the root to the tip, fixed and locked ones included."""
+        return self.chain_to(self.tip)
+
+    def chain_to(self, link: str) -> tuple[Joint, ...]:
+        """All joints from the root to a link, fixed and locked ones included. KeyError for no link."""
         by_child = {joint.child: joint for joint in self.joints}
         found: list[Joint] = []
-        link = self.tip
         while link != self.root:
             found.append(by_child[link])
             link = by_child[link].parent
         return tuple(reversed(found))
 
     @cached_property
+    def moved(self) -> tuple[Joint, ...]:
+        """The joints of all chains, to the tip and to the carriers: depth first, as axes come."""
+        wanted = {joint.name for link in (self.tip, *self.carriers) for joint in self.chain_to(link)}
+        children: dict[str, list[Joint]] = {}
+        for joint in self.joints:
+            if joint.name in wanted:
+                children.setdefault(joint.parent, []).append(joint)
+        found: list[Joint] = []
+        waiting = list(reversed(children.get(self.root, [])))
+        while waiting:
+            joint = waiting.pop()
+            found.append(joint)
+            waiting += reversed(children.get(joint.child, []))
+        return tuple(found)
+
+    @cached_property
     def moving(self) -> tuple[Joint, ...]:
-        """The joints of the chain that move: the axes, and those that follow them."""
-        return tuple(j for j in self.chain if j.kind is not JointKind.FIXED and j.name not in self.locked)
+        """The joints of the chains that move: the axes, and those that follow them."""
+        return tuple(j for j in self.moved if j.kind is not JointKind.FIXED and j.name not in self.locked)
 
     @cached_property
     def axes(self) -> tuple[Joint, ...]:
@@ -147,7 +169,12 @@ class RobotDescription:
     @cached_property
     def reach(self) -> float:
         """Upper bound of the distance between the first axis and the tool, m, all slides at the far end."""
-        return self._farthest_from(self.axes[0]) if self.axes else self._farthest_from(None)
+        return self.reach_to(self.tip) or 1.0
+
+    def reach_to(self, link: str) -> float:
+        """Upper bound of the distance between the first axis that moves a link and the link, m; 0 without."""
+        axes = [joint for joint in self.chain_to(link) if joint in self.axes]
+        return self._farthest(link, axes[0]) if axes else 0.0
 
     @cached_property
     def lever(self) -> float:
@@ -156,33 +183,38 @@ class RobotDescription:
         What a turn of one rad is worth at the tool, at most: strokes of slides that carry the whole arm, a
         rail or a platform, have no part in it. That of `reach` where no axis turns.
         """
-        turning = next((joint for joint in self.axes if not joint.is_prismatic), None)
-        return self.reach if turning is None else self._farthest_from(turning)
+        return self.lever_to(self.tip) or self.reach
 
-    def _farthest_from(self, first: Joint | None) -> float:
-        """Length of the chain behind an axis, m, its slides at their far ends; 1 where that is 0."""
-        start = self.chain.index(first) if first is not None else -1
-        total = sum(sum(c * c for c in joint.xyz) ** 0.5 for joint in self.chain[start + 1 :])
-        counted = self.chain[max(start, 0) :]
+    def lever_to(self, link: str) -> float:
+        """The same of the first axis that turns a link, and that link; 0 where none does."""
+        turning = [j for j in self.chain_to(link) if j in self.axes and not j.is_prismatic]
+        return self._farthest(link, turning[0]) if turning else 0.0
+
+    def _farthest(self, link: str, first: Joint) -> float:
+        """Length of the chain to a link behind one of its axes, m, its slides at their far ends."""
+        chain = self.chain_to(link)
+        start = chain.index(first)
+        total: float = sum(sum(c * c for c in joint.xyz) ** 0.5 for joint in chain[start + 1 :])
+        counted = chain[start:]
         for joint, (axis, multiplier, offset) in zip(self.moving, self.coupling, strict=True):
             if joint.is_prismatic and joint in counted:
                 leader = self.axes[axis]
                 ends = (leader.lower, leader.upper) if multiplier else (0.0,)
                 stroke = max(abs(multiplier * end + offset) for end in ends)
                 total += stroke if stroke != inf else 0.0
-        return total if total > 0.0 else 1.0
+        return total
 
     @cached_property
     def fingerprint(self) -> str:
-        """SHA-256 (hex) of the chain's geometry and task: two robots that move alike have the same one."""
+        """SHA-256 (hex) of the chains' geometry and task: two robots that move alike have the same one."""
         chain = [
             {**asdict(joint), "lower": None, "upper": None, "speed": None, "kind": joint.kind.value}
-            for joint in self.chain
+            for joint in self.moved
         ]
         for joint in chain:
             if joint["mimic"] is None:
                 del joint["mimic"]
-        locked = {joint.name: self.locked[joint.name] for joint in self.chain if joint.name in self.locked}
+        locked = {joint.name: self.locked[joint.name] for joint in self.moved if joint.name in self.locked}
         told: dict[str, object] = {"tip": self.tip, "chain": chain, "locked": locked}
         if self.coordinates != COORDINATES:
             told["task"] = self.coordinates

@@ -11,8 +11,10 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from irlx.blocks.link_frame import LinkFrame
 from irlx.robot.description import COORDINATES, Inertial, Joint, JointKind, RobotDescription
 from irlx.robot.equality import Constraint
+from irlx.robot.implied import implied_by_pose
 from irlx.robot.task import Task, framed_difference, partial_difference, pose_errors
 
 Array = NDArray[np.float64]
@@ -105,7 +107,10 @@ class Kinematics:
         description: RobotDescription,
         constraints: Sequence[Constraint] = (),
         tool: pin.SE3 | None = None,
+        implied: Sequence[Constraint] = (),
     ) -> None:
+        """`implied` are conditions that are no rows, because the pose of the tool keeps or breaks them."""
+        self.implied = tuple(implied)
         self.description = description
         self.tool = pin.SE3.Identity() if tool is None else tool
         self.constraints = tuple(constraints)
@@ -117,6 +122,7 @@ class Kinematics:
         for joint in description.joints:
             self._children.setdefault(joint.parent, []).append(joint)
         self._tip_frame = -1
+        self._relative: dict[LinkFrame, Kinematics] = {}
         self._bodies: dict[str, tuple[int, pin.SE3]] = {}
         self._add_link(description.root, 0, pin.SE3.Identity())
         self.data = self.model.createData()
@@ -144,6 +150,39 @@ class Kinematics:
         x, y, z, w = orientation
         turn = pin.Quaternion(w, x, y, z).normalized().toRotationMatrix()
         return Kinematics(self.description, self.constraints, pin.SE3(turn, np.array(position)))
+
+    @property
+    def frame(self) -> LinkFrame | None:
+        """The frame that moves with a link in which poses of the tool are told, None for the world."""
+        return None
+
+    @cached_property
+    def of_pose(self) -> Kinematics:
+        """The same robot for motions that demand poses: constraints that the pose keeps or breaks by itself
+        are `implied`, and no rows."""
+        implied = implied_by_pose(self) if self.constraints else ()
+        if not implied:
+            return self
+        kept = [item for item in self.constraints if item not in implied]
+        return Kinematics(self.description, kept, self.tool, implied)
+
+    @property
+    def world(self) -> Kinematics:
+        """The same robot, the poses of its tool told in the world."""
+        return self
+
+    def relative_to(self, frame: LinkFrame) -> Kinematics:
+        """The same robot, the poses of its tool told in a frame that moves with one of its links.
+
+        Raises KeyError where it has no such link.
+        """
+        found = self._relative.get(frame)
+        if found is None:
+            # Imported here: it is a Kinematics itself.
+            from irlx.robot.relative_kinematics import RelativeKinematics
+
+            found = self._relative[frame] = RelativeKinematics(self, frame)
+        return found
 
     def _add_link(self, link: str, parent: int, in_parent: pin.SE3) -> None:
         """Add a link, welded to Pinocchio joint `parent` at `in_parent`, and all that hangs on it."""
@@ -213,15 +252,17 @@ class Kinematics:
 
     def tool_difference(self, q: Array, target: pin.SE3) -> tuple[Array, Array]:
         """log6(T(q)^-1 T_target), shape (6,), and the tool Jacobian, shape (6, n), whatever the task."""
+        pose, jacobian = self._pose_and_jacobian(q)
+        return pin.log6(pose.actInv(target)).vector, jacobian
+
+    def _pose_and_jacobian(self, q: Array) -> tuple[pin.SE3, Array]:
+        """Pose of the tool, in a buffer, and its Jacobian (6, n) in the tool frame."""
         if self.coupling is not None:
             q = self.expanded(q)
         pin.computeJointJacobians(self.model, self.data, q)
         pose = pin.updateFramePlacement(self.model, self.data, self._tip_frame)
-        twist = pin.log6(pose.actInv(target)).vector
         jacobian = pin.getFrameJacobian(self.model, self.data, self._tip_frame, _LOCAL)
-        if self.coupling is not None:
-            jacobian = jacobian.dot(self.coupling)
-        return twist, jacobian
+        return pose, jacobian if self.coupling is None else jacobian.dot(self.coupling)
 
     def tool_motions(self, q: Array) -> Array:
         """Tool Jacobian in the tool frame by all N joints of `model`, (6, N), each of them moving alone."""
@@ -237,13 +278,14 @@ class Kinematics:
         return left, -matrix
 
     def _rows(self, q: Array, target: pin.SE3, exact: bool) -> tuple[Array, Array]:
-        left, matrix = self.tool_difference(q, target)
-        pose = self.data.oMf[self._tip_frame]
+        pose, matrix = self._pose_and_jacobian(q)
         if not self.task.is_whole:
             left, matrix = self._part(self.task, pose, matrix, target)
-        elif exact:
+        else:
             apart = pose.actInv(target)
-            matrix = pin.Jlog6(apart) @ apart.inverse().action @ matrix
+            left = pin.log6(apart).vector
+            if exact:
+                matrix = pin.Jlog6(apart) @ apart.inverse().action @ matrix
         if not self.constraints:
             return left, matrix
         rows = [item.rows(q) for item in self.constraints]
@@ -261,8 +303,10 @@ class Kinematics:
     def _turns_of_frame(self, frame: Array) -> Array:
         """Angular velocity (3, n) of the task's frame, in its own axes, by the joints."""
         assert self._frame is not None
-        turns = np.array(self.data.J[3:])
-        turns[:, self._frame[0] :] = 0.0
+        # Joints of other branches do not turn it.
+        carry = [joint - 1 for joint in self.model.supports[self._frame[0]] if joint > 0]
+        turns = np.zeros((3, self.model.nv))
+        turns[:, carry] = self.data.J[3:, carry]
         return self.by_axes(frame.T @ turns)
 
     def task_frames(self, q: Array) -> Array:
@@ -286,8 +330,8 @@ class Kinematics:
 
     def left_of(self, task: Task, q: Array, target: pin.SE3) -> Array:
         """What is left from posture q to a target in the coordinates of some task, in the task's frame."""
-        _, jacobian = self.tool_difference(q, target)
-        return self._part(task, self.data.oMf[self._tip_frame], jacobian, target)[0]
+        pose, jacobian = self._pose_and_jacobian(q)
+        return self._part(task, pose, jacobian, target)[0]
 
     def sizes(self, left: Array) -> Sizes:
         """What is left (m,), as `difference` gives it first, in three numbers."""
@@ -314,8 +358,8 @@ class Kinematics:
             # Joint values without any pattern: what is zero at all of them is so everywhere.
             q = np.sin(np.arange(1.0, self.joints + 1.0) * (1.7 + k))
             target = self.target(*self.tool_pose(q))
-            jacobian = self.tool_difference(q, target)[1]
-            found.append(self._part(Task(), self.data.oMf[self._tip_frame], jacobian, target)[1])
+            pose, jacobian = self._pose_and_jacobian(q)
+            found.append(self._part(Task(), pose, jacobian, target)[1])
         units = np.array([self.description.reach] * 3 + [1.0] * 3)
         return np.asarray(found / units[:, None])
 
@@ -371,7 +415,7 @@ class Kinematics:
         """The matrix (m, n) of `here`."""
         if not self._plain:
             return self.here(q)[1]
-        return self.by_axes(self.tool_motions(q))
+        return np.asarray(self._pose_and_jacobian(q)[1])
 
     def here(self, q: Array) -> tuple[Array, Array]:
         """`difference` to the tool's own pose at q: constraints alone may be left."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from math import inf, sqrt
 
@@ -17,12 +17,16 @@ MOST_LINKS = 500
 
 
 def read_urdf(
-    text: str, tip: str | None = None, locked: Mapping[str, float] | None = None
+    text: str,
+    tip: str | None = None,
+    locked: Mapping[str, float] | None = None,
+    carriers: Collection[str] = (),
 ) -> RobotDescription:
     """Description of the robot in a URDF text.
 
     `tip` is the link that moves address, by default the only leaf of the tree; `locked` maps joint
-    names to the values (rad or m) they are held at. Raises RobotModelError naming the element.
+    names to the values (rad or m) they are held at; joints that lead to the links `carriers` are axes as
+    well. Raises RobotModelError naming the element.
     """
     root_element = _robot_element(text)
     joints = tuple(_joint(element) for element in root_element.findall("joint"))
@@ -39,9 +43,13 @@ def read_urdf(
         if name not in {joint.name for joint in joints}:
             known = tuple(joint.name for joint in joints)
             raise RobotModelError(f"no joint is called '{name}'", name, known)
+    for link in carriers:
+        if link not in links:
+            raise RobotModelError(f"no link is called '{link}'", link, tuple(links))
     solids = link_solids(root_element.findall("link"))
+    name = root_element.get("name", "robot")
     robot = RobotDescription(
-        root_element.get("name", "robot"), root, tip, joints, inertials, locked, solids=solids
+        name, root, tip, joints, inertials, locked, solids=solids, carriers=tuple(carriers)
     )
     check_followers(robot)
     return _within_followers(robot)

@@ -22,6 +22,7 @@ from irlx.blocks import (
 from irlx.promises import JOINT_LINE, PATH_ORIENTATION, PATH_POSITION, TOLERANCE_BAND
 from irlx.robot.description import RobotDescription
 from irlx.streams.joint_stream import Floats
+from irlx.verifier.frames import FramesInForce
 from irlx.verifier.geometry.allowance import EXACT, Allowance
 from irlx.verifier.geometry.arcs import arc_shape
 from irlx.verifier.geometry.forward import forward
@@ -32,7 +33,8 @@ from irlx.verifier.outline import Outline
 from irlx.verifier.tools import Pose, ToolsInForce
 
 BASE_FRAME, TOOL_FRAME = "R_BASE", "R_TOOL"
-"""The frames of targets that the verifier can place: the root of the robot, and for shifts the tool."""
+"""The frames of targets that the verifier can place, beside those that their blocks describe: the root of the
+robot, and for shifts the tool."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,10 +69,14 @@ class Demand:
 
 @dataclass(frozen=True, eq=False)
 class Placer:
-    """Finds the places of targets of a robot, with the tools in force; without a robot only postures."""
+    """Finds the places of targets of a robot, with the tools in force; without a robot only postures.
+
+    Poses are those that the frame of their block sees, that of a link or the world.
+    """
 
     robot: RobotDescription | None
     tools: ToolsInForce
+    frames: FramesInForce
 
     @cached_property
     def turns(self) -> TaskTurns | None:
@@ -97,11 +103,12 @@ class Placer:
 
     def of_posture(self, q: Floats, block: int) -> Pose | None:
         """Pose of the tool of a block in posture q (n,)."""
-        if self.robot is None:
-            return None
-        position, rotation = self.tools.placed(
-            forward(self.robot, q[None]), np.array([self.tools.number(block)], dtype=np.int64)
-        )
+        return None if self.robot is None else self.of_tip(forward(self.robot, q[None]), q, block)
+
+    def of_tip(self, tip: Pose, q: Floats, block: int) -> Pose:
+        """The same of its pose in the world from that of the tip, (1, 3) and (1, 3, 3)."""
+        placed = self.tools.placed(tip, np.array([self.tools.number(block)], dtype=np.int64))
+        position, rotation = self.frames.seen_from(self.frames.of_block.get(block), placed, q[None])
         return position[0], rotation[0]
 
     def all_of(self, move: MoveRows, start: Place) -> tuple[Place, ...]:
@@ -131,10 +138,12 @@ class Placer:
                 return Place(None)
             posture = start.posture + np.array(target.values)
             return Place(self.of_posture(posture, block), posture)
-        return Place(_pose(target, start.pose))
+        frame = self.frames.of_block.get(block)
+        return Place(_pose(target, start.pose, BASE_FRAME if frame is None else frame.name))
 
 
-def _pose(target: PoseTarget | PoseIncrement, start: Pose | None) -> Pose | None:
+def _pose(target: PoseTarget | PoseIncrement, start: Pose | None, base: str) -> Pose | None:
+    """Pose of a target in the frame `base` of its block."""
     position = np.array(target.position, dtype=np.float64)
     rotation = None
     if target.orientation is not None:
@@ -143,14 +152,14 @@ def _pose(target: PoseTarget | PoseIncrement, start: Pose | None) -> Pose | None
     if isinstance(target, PoseTarget):
         kept = None if start is None else start[1]
         rotation = kept if rotation is None else rotation
-        return None if target.frame != BASE_FRAME or rotation is None else (position, rotation)
+        return None if target.frame != base or rotation is None else (position, rotation)
     if start is None:
         return None
     if rotation is not None:
         return start[0] + start[1] @ position, start[1] @ rotation
     if target.frame == TOOL_FRAME:
         return start[0] + start[1] @ position, start[1]
-    return (start[0] + position, start[1]) if target.frame == BASE_FRAME else None
+    return (start[0] + position, start[1]) if target.frame == base else None
 
 
 def demands_of(outline: Outline, moves: list[MoveRows], placer: Placer) -> list[Demand]:
@@ -212,18 +221,17 @@ class _Ends:
     """Places where blocks end, their poses computed all at once."""
 
     def __init__(self, outline: Outline, placer: Placer) -> None:
-        self._outline, self._tools, self.placer = outline, placer.tools, placer
+        self._outline, self.placer = outline, placer
         self._tips = None if placer.robot is None else forward(placer.robot, outline.ends)
 
     def place(self, row: int, block: int) -> Place:
-        """Place in a row in which a block ends, with the tool of another one."""
+        """Place in a row in which a block ends, with the tool and the frame of another one."""
         stretch = int(np.searchsorted(self._outline.lasts, row))
         posture = self._outline.ends[stretch]
         if self._tips is None:
             return Place(None, posture)
         tip = self._tips[0][stretch : stretch + 1], self._tips[1][stretch : stretch + 1]
-        position, rotation = self._tools.placed(tip, np.array([self._tools.number(block)], dtype=np.int64))
-        return Place((position[0], rotation[0]), posture)
+        return Place(self.placer.of_tip(tip, posture, block), posture)
 
 
 def _stands(outline: Outline, move: MoveRows, target: Place, ends: _Ends) -> bool:
@@ -245,13 +253,16 @@ def _stands(outline: Outline, move: MoveRows, target: Place, ends: _Ends) -> boo
 
 def _joinable(outline: Outline) -> frozenset[int]:
     """Ids of moves that may pass their target. Between a PTP and a move of the tool that is not so where
-    joint increments count from a posture that is not reached, or where TIME counts from stop to stop."""
+    joint increments count from a posture that is not reached, where TIME counts from stop to stop, or where
+    the tool is led in a frame that moves; nowhere between two frames."""
     moves = [
         record.block for record in outline.records if not isinstance(record.block, SignalBlock | InputBlock)
     ]
     found = set()
     for block, following in pairwise(moves):
         if not isinstance(block, MoveBlock) or not isinstance(following, MoveBlock) or block.blend is None:
+            continue
+        if block.frame != following.frame:
             continue
         if block.tolerance is not None or following.tolerance is not None:
             continue
@@ -262,4 +273,5 @@ def _joinable(outline: Outline) -> frozenset[int]:
 
 
 def _needs_stop(move: MoveBlock) -> bool:
-    return isinstance(move.target, JointIncrement) or move.law.duration is not None
+    counts_stops = isinstance(move.target, JointIncrement) or move.law.duration is not None
+    return counts_stops or move.frame is not None

@@ -16,6 +16,7 @@ from irlx.streams.joint_stream import Floats
 from irlx.verifier.chain_legs import end_reach
 from irlx.verifier.demands import Demand, Placer, demands_of
 from irlx.verifier.findings.tally import Tally
+from irlx.verifier.frames import frames_of
 from irlx.verifier.limits import LimitsInForce, limits_in_force
 from irlx.verifier.moves import MoveRows, moves_of
 from irlx.verifier.outline import Outline
@@ -55,8 +56,9 @@ class Evidence:
 
     @cached_property
     def placer(self) -> Placer:
-        """Finds where targets are, with the tools that the stream's blocks set."""
-        return Placer(self.robot, tools_of(self.outline.records))
+        """Finds where targets are, with the tools that the stream's blocks set and the frames they name."""
+        records = self.outline.records
+        return Placer(self.robot, tools_of(records), frames_of(records, self.robot))
 
     @cached_property
     def demands(self) -> dict[int, Demand]:

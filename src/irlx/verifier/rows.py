@@ -9,10 +9,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from irlx.blocks import LinkFrame
 from irlx.robot.description import RobotDescription
 from irlx.streams.error import StreamError
 from irlx.streams.joint_stream import Floats, Integers
 from irlx.streams.scan import RowBatch, ScanItem, StatedRates
+from irlx.verifier.frames import FramesInForce, frames_of
 from irlx.verifier.geometry.forward import forward
 from irlx.verifier.geometry.task_turns import TaskTurns
 from irlx.verifier.outline import Outline, Scans
@@ -55,8 +57,9 @@ class Rows:
     and s2, the robot resting before row 0. Arrays `postures` (R + 1, n), `positions` (R + 1, 3) m and
     `rotations` (R + 1, 3, 3) begin with the row before; for row 0 that is row 0 itself. Poses are those of
     the verifier's own forward kinematics, and empty where no robot is known: those of the tip in `tips`, of
-    the tool in force in each row in `positions` and `rotations`. `turns` tells which turns of it count, None
-    for all.
+    the tool in force in each row in `in_world`, and in `positions` and `rotations` as the frame sees it in
+    which the poses of the row's block count, that of a moving link or the world. `turns` tells
+    which turns of it count, None for all.
     """
 
     first: int
@@ -70,6 +73,8 @@ class Rows:
     outline: Outline
     tips: Pose
     tools: ToolsInForce
+    in_world: Pose
+    frames: FramesInForce
     turns: TaskTurns | None = None
 
     def __len__(self) -> int:
@@ -90,16 +95,22 @@ class Rows:
         return row - self.first + 1 if self.first <= row < self.first + len(self) else None
 
     def pose(self, place: int, block: int) -> Pose:
-        """Pose (position (3,), rotation (3, 3)) of a block's tool at a `place` in arrays of R + 1 rows."""
+        """Pose (position (3,), rotation (3, 3)) of a block's tool at a `place` in arrays of R + 1 rows, as
+        its frame sees it."""
+        return self.pose_in(place, block, self.frames.of_block.get(block))
+
+    def pose_in(self, place: int, block: int, frame: LinkFrame | None) -> Pose:
+        """The same as another frame sees it, or the world."""
         here = slice(place, place + 1)
         number = np.array([self.tools.number(block)], dtype=np.int64)
-        position, rotation = self.tools.placed((self.tips[0][here], self.tips[1][here]), number)
+        found = self.tools.placed((self.tips[0][here], self.tips[1][here]), number)
+        position, rotation = self.frames.seen_from(frame, found, self.postures[here])
         return position[0].copy(), rotation[0].copy()
 
     def before(self, stretch: Stretch) -> Pose:
-        """Poses (R', ..) of the stretch's own tool in the row before each of its rows."""
+        """Poses (R', ..) of the stretch's own tool in the row before each of its rows, in its own frame."""
         positions, rotations = self.positions[stretch.before], self.rotations[stretch.before]
-        if stretch.begins and self.tools.change:
+        if stretch.begins and (self.tools.change or self.frames.of_block):
             positions, rotations = positions.copy(), rotations.copy()
             positions[0], rotations[0] = self.pose(stretch.before.start, stretch.block)
         return positions, rotations
@@ -133,9 +144,9 @@ def rows_of(scans: Scans, outline: Outline, robot: RobotDescription | None) -> I
     done = 0
     earlier: tuple[Floats, Floats] | None = None
     poses: tuple[Floats, Floats] | None = None
-    tools = tools_of(outline.records)
+    tools, frames = tools_of(outline.records), frames_of(outline.records, robot)
+    block = np.zeros(1, dtype=np.int64)
     turns = None if robot is None else TaskTurns.of(robot)
-    held = 0
     for portion in _portions(scans()):
         # A file that grows meanwhile is judged as it was.
         batch = portion.part(slice(0, outline.rows - done))
@@ -147,15 +158,17 @@ def rows_of(scans: Scans, outline: Outline, robot: RobotDescription | None) -> I
         qd = np.diff(postures, axis=0) / dt
         qdd = np.diff(qd, axis=0, prepend=slower) / dt
         tips = np.zeros((0, 3)), np.zeros((0, 3, 3))
-        numbers = tools.numbers(batch.block)
+        blocks = np.concatenate([block, batch.block])
         if robot is not None:
             own = forward(robot, q)
             known = poses if poses is not None else (own[0][:1], own[1][:1])
             tips = np.concatenate([known[0], own[0]]), np.concatenate([known[1], own[1]])
             poses = tips[0][-1:], tips[1][-1:]
-        placed = tools.placed(tips, np.concatenate([[held], numbers])) if robot is not None else tips
-        held = int(numbers[-1])
-        yield Rows(done, postures, qd, qdd, batch.tool, batch.rates, *placed, outline, tips, tools, turns)
+        placed = tools.placed(tips, tools.numbers(blocks)) if robot is not None else tips
+        seen = frames.seen(placed, postures, blocks)
+        block = blocks[-1:]
+        told = batch.tool, batch.rates
+        yield Rows(done, postures, qd, qdd, *told, *seen, outline, tips, tools, placed, frames, turns)
         earlier = q[-1:], qd[-1:]
         done += len(q)
 

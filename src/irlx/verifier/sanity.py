@@ -15,6 +15,7 @@ from irlx.blocks import (
     JointRange,
     JointTarget,
     LimitSwitchBlock,
+    LinkFrame,
     MotionLaw,
     MoveBlock,
     MoveKind,
@@ -39,7 +40,7 @@ def wrong_numbers(block: Block, joints: int) -> str:
     if any(len(bounds.lower) != joints or len(bounds.upper) != joints for bounds in ranges):
         return f"its limits are not those of {joints} joints"
     if isinstance(block, MoveBlock | ReconfigureBlock):
-        reason = _wrong_law(block.law)
+        reason = _wrong_law(block.law) or _wrong_frame(block.frame)
         if reason:
             return reason
     find: Callable[[Any, int], str] | None = next(
@@ -117,6 +118,14 @@ def _wrong_length(orientation: tuple[float, ...]) -> str:
     return (
         "" if abs(length - 1.0) <= UNIT_LENGTH else f"its orientation is a quaternion of length {length:.6g}"
     )
+
+
+def _wrong_frame(frame: LinkFrame | None) -> str:
+    if frame is None:
+        return ""
+    if not np.isfinite(frame.position).all():
+        return f"its frame lies at {frame.position} m"
+    return _wrong_length(frame.orientation)
 
 
 def _wrong_tool(block: ToolBlock, joints: int) -> str:

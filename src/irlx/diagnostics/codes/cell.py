@@ -128,4 +128,14 @@ CELL = (
         "links are not kept off each other: {cause}",
         "active = false under [robot.self_collision] says that this is meant",
     ),
+    error(
+        "IRL646",
+        "{key}: the frame '{name}' moves with the link {link}, and an obstacle cannot",
+        "shapes that move with a link belong to it in the URDF",
+    ),
+    error(
+        "IRL647",
+        "{key}: the link {link} moves with the tool frame {tip} at all times: no axis lies between them",
+        "bind the frame to a link of another hand",
+    ),
 )

@@ -28,6 +28,7 @@ RUN = (
     error("IRL512", "a text of {length} characters is too long; at most {most} are kept"),
     error("IRL513", "this is nested too deeply to be executed", "split it"),
     error("IRL514", "RETURN {need}"),
+    error("IRL515", "the frame '{name}' moves with the link {link}, which {robot} does not have{near}"),
     error(
         "IRL520",
         "the tool cannot follow this move beyond {way} of {length} (tick {tick}) at any speed: {held}; "

@@ -23,7 +23,7 @@ SYNTAX: tuple[Code, ...] = (
     error(
         "IRL114",
         "{item} stands after WITH or out of order in the MOVE",
-        "the order is: targets, then name := value, then WITH clauses",
+        "the order is: targets, then IN FRAME, then name := value, then WITH clauses",
     ),
     error("IRL115", "comparisons cannot be chained", "compare twice and join with AND: a < b AND b < c"),
     error(

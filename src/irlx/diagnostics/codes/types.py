@@ -30,4 +30,10 @@ TYPES = (
         "use the variable itself in OPEN, READ, WRITE, CLOSE, or hand it to a VAR parameter",
     ),
     error("IRL230", "an orientation needs a quaternion of length 1, found length {length}"),
+    error("IRL290", "the cell has no frame '{name}'{near}", "frames are {known}"),
+    error(
+        "IRL291",
+        "the frame '{name}' moves with a link of the robot, so that it is no POSE",
+        "MOVE .. IN FRAME {name} goes in it; R_BASE takes a frame that stands still",
+    ),
 )

@@ -34,14 +34,17 @@ class _Tail:
 
     def __init__(self) -> None:
         self.targets: list[tree.Expression] = []
+        self.frames: list[tree.InFrame] = []
         self.params: list[tree.MoveParam] = []
         self.clauses: list[tree.WithClause] = []
 
-    def add(self, item: tree.Expression | tree.MoveParam | tree.WithClause) -> None:
+    def add(self, item: tree.Expression | tree.InFrame | tree.MoveParam | tree.WithClause) -> None:
         """Take the next item of the tail."""
         last = self.clauses[-1] if self.clauses else None
         if isinstance(item, _CLAUSES):
             self.clauses.append(item)
+        elif isinstance(item, tree.InFrame):
+            self.frames.append(item)
         elif isinstance(item, tree.MoveParam):
             if isinstance(last, tree.WithCriterion):
                 span = last.span.to(item.span)
@@ -80,9 +83,14 @@ class MotionBuilder:
             path,
             children[0].type == "MOVE_INC",
             _opened(targets) if path else targets,
+            tuple(tail.frames),
             tuple(tail.params),
             tuple(tail.opened_clauses() if path else tail.clauses),
         )
+
+    def in_frame(self, children: Children) -> tree.InFrame:
+        """Reduce IN FRAME."""
+        return tree.InFrame(span_of(children), children[2])
 
     def param(self, children: Children) -> tree.MoveParam:
         """Reduce ``name := value``."""
@@ -138,7 +146,7 @@ class MotionBuilder:
 
     def reconfiguration(self, children: Children) -> tree.Reconfiguration:
         """Reduce RECONFIGURATION as a statement."""
-        return tree.Reconfiguration(span_of(children), children[1])
+        return tree.Reconfiguration(span_of(children), children[1], *children[2:])
 
     def criterion_start(self, children: Children) -> tree.CriterionStart:
         """Reduce CRITERION."""

@@ -44,7 +44,7 @@ def check_types(
     root: tree.Program | tree.Module | tree.DataList,
     source: SourceText,
     lists: Sequence[ImportedList] = (),
-    frames: Collection[str] = (),
+    frames: Collection[str] | None = None,
     joints: tuple[str, ...] = (),
     modules: Mapping[str, Mapping[str, Symbol]] = _NO_MODULES,
     *,
@@ -53,8 +53,8 @@ def check_types(
 ) -> TypedText:
     """Give everything in a text its type. `joints` are those of the robot where the cell is known.
 
-    `modules` are what those modules export that are known, by casefolded names; `obstacles` are names of the
-    cell, None where it is not known.
+    `modules` are what those modules export that are known, by casefolded names; `frames` and `obstacles` are
+    names of the cell, None where it is not known; a mapping says of frames which move with a link.
     Without `complete`, parts of the text have been left out.
     """
     if isinstance(root, tree.DataList):
@@ -78,7 +78,7 @@ def check_types(
 def type_check(
     source: SourceText,
     joints: Joints,
-    frames: Collection[str] = (),
+    frames: Collection[str] | None = None,
     obstacles: Collection[str] | None = None,
     *,
     complete: bool = True,

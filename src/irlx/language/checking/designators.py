@@ -56,6 +56,10 @@ class Designators(Context):
             return NOTHING
         if entry.signature is not None or entry.kind in NOT_A_VALUE:
             return self._routine(entry, node)
+        if entry.kind == "moving frame":
+            self._indices(node.selectors)
+            self.add("IRL291", node.base, name=node.base.name)
+            return NOTHING
         type = self.part(entry.type, node) if node.selectors else entry.type
         if holds_files(type):
             self.add("IRL267", node, what="copied")
@@ -185,6 +189,7 @@ class Designators(Context):
         entry = self.names.value(inner.base.key) or port_entry(inner.base.key)
         fixed = {
             "constant": "a constant",
+            "moving frame": "a frame that moves",
             "input": "an input",
             "output": "an output",
             "followed": FOLLOWED,

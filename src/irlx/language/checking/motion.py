@@ -8,6 +8,7 @@ from irlx.language import tree
 from irlx.language.builtins import MOVE_PARAMETERS
 from irlx.language.checking.context import Settled, Typed
 from irlx.language.checking.type_forms import TypeForms
+from irlx.language.frames import unknown_frame
 from irlx.language.types import (
     BOOL,
     INT,
@@ -59,6 +60,8 @@ class Motion(TypeForms):
     def move(self, move: tree.Move) -> None:
         """Targets, parameters and clauses of a MOVE."""
         candidates = self._targets(move)
+        for frame in move.frames:
+            self._frame(frame)
         types = []
         for target in move.targets:
             found = self._listed(target, candidates) if move.path else self._target(target, candidates)
@@ -185,6 +188,14 @@ class Motion(TypeForms):
     def reconfiguration(self, node: tree.Reconfiguration) -> None:
         """The posture of RECONFIGURATION."""
         self.one_of(node.target, self._postures())
+        if node.frame is not None:
+            self._frame(node.frame)
+
+    def _frame(self, node: tree.InFrame) -> None:
+        """A name of a frame of the cell: IRL290 where the cell is known and has none like it."""
+        known, name = self.names.frames, node.name
+        if known is not None and name.key and name.key not in {one.casefold() for one in known}:
+            self.findings.append(unknown_frame(name.name, known, self.place(name)))
 
 
 def _number(type: Type) -> int:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -70,6 +70,8 @@ class Names:
         self.type_symbols: dict[str, Symbol] = {}
         self.obstacles: Collection[str] | None = outer.obstacles if outer is not None else None
         """Names of obstacles and groups of the cell, None where no cell is known."""
+        self.frames: Collection[str] | None = outer.frames if outer is not None else None
+        """Names of frames of the cell, None where no cell is known."""
         self.functions: dict[str, Signature] = built_in_functions(types) if outer is None else outer.functions
 
     def inner(self) -> Names:
@@ -94,13 +96,16 @@ class Names:
 
 def system_names(
     types: dict[str, Type],
-    frames: Collection[str],
+    frames: Collection[str] | None,
     joints: int | None = None,
     obstacles: Collection[str] | None = None,
 ) -> Names:
-    """The outermost names: system variables of a robot of a number of joints, what its cell has names for."""
+    """The outermost names: system variables of a robot of a number of joints, what its cell has names for.
+
+    Of `frames` a mapping says which move with a link of the robot, and are no poses.
+    """
     names = Names(types)
-    names.obstacles = obstacles
+    names.obstacles, names.frames = obstacles, frames
     of_robot = {
         "r_robtarget_act": types["robtarget"],
         "r_joint_act": types["joint"],
@@ -110,8 +115,10 @@ def system_names(
     for key in SYSTEM_VARIABLES:
         kind = "system" if key in _READ_ONLY else "followed" if key in _FOLLOWED else "variable"
         names.values[key] = Entry(kind, of_robot.get(key) or _SYSTEM_TYPES.get(key, REAL))
-    for frame in frames:
-        names.values.setdefault(frame.casefold(), Entry("constant", POSE))
+    moving = {name for name, moves in frames.items() if moves} if isinstance(frames, Mapping) else ()
+    for frame in frames or ():
+        entry = Entry("moving frame" if frame in moving else "constant", POSE)
+        names.values.setdefault(frame.casefold(), entry)
     return names
 
 

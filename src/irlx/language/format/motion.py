@@ -33,7 +33,8 @@ class MotionLayout(ExpressionLayout):
             case tree.FreezeEnd() | tree.CyclicStart() | tree.CyclicEnd():
                 return word("FREEZEEND", "CYCLICSTART", "CYCLICEND")
             case tree.Reconfiguration():
-                return (word("RECONFIGURATION"), " ", self.expression(node.target))
+                posture = (word("RECONFIGURATION"), " ", self.expression(node.target))
+                return posture if node.frame is None else (*posture, " ", self._in_frame(node.frame))
             case tree.CriterionStart():
                 head = (word("CRITERION"), " ", self.name(node.name))
                 return (head, *self._params_behind(node))
@@ -50,8 +51,11 @@ class MotionLayout(ExpressionLayout):
         head.append(self._targets(node.targets))
         parts: list[Doc] = []
         broken = False
+        for frame in node.frames:
+            broken = broken or self.tokens.on_new_line
+            parts += [Line(), self._in_frame(frame)]
         if node.params:
-            broken = self._at_params()
+            broken = self._at_params() or broken
             # At the start of a line, any other name begins the next statement.
             may_begin_line = node.params[0].name.key in MOVE_PARAMETERS
             parts += [Line() if may_begin_line else " ", self._params(node.params)]
@@ -62,6 +66,9 @@ class MotionLayout(ExpressionLayout):
             broken = broken or self.tokens.on_new_line
             parts += [Line(), word_with, " ", self._clause(clause)]
         return Group((*head, Indent(tuple(parts))), broken)
+
+    def _in_frame(self, node: tree.InFrame) -> Doc:
+        return (self.tokens.word("IN"), " ", self.tokens.word("FRAME"), " ", self.name(node.name))
 
     def _targets(self, targets: Sequence[tree.Expression]) -> Doc:
         """Targets with commas; the parentheses of a PATH are none of the tree's."""

@@ -73,8 +73,8 @@ def _undeclared(
     imports = imports_of(root, source, data_lists)
     if not imports.whole:
         return []
-    given = cell_names(root) if cell_names is not None else ()
-    _, findings = check_names(root, source, given, imports, complete=True)
+    given = cell_names(root) if cell_names is not None else None
+    _, findings = check_names(root, source, given or (), imports, complete=True)
     asked = read_ignores(source, parsed.comments).asked
     told, _ = without_ignored([found for found in findings if found.code == "IRL205"], asked)
     spans = [found.place.span for found in told if found.place is not None and found.place.text is source]

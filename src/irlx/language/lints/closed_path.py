@@ -61,7 +61,7 @@ def open_cycles(program: tree.Program, facts: Facts, source: SourceText) -> Iter
 def _end(move: tree.Move, facts: Facts) -> _Point | None:
     """Where a MOVE ends, mm."""
     turned = any(param.name.key == "angle" for param in move.params)
-    if move.incremental or turned or not move.targets:
+    if move.incremental or turned or not move.targets or move.frame is not None:
         return None
     type, settled = facts.targets.get(id(move.targets[-1]), (None, None))
     value = value_of(settled)

@@ -55,15 +55,31 @@ WithClause: TypeAlias = "WithLimit | WithReconfiguration | WithCriterion | WithT
 
 
 @dataclass(frozen=True, slots=True)
+class InFrame(Node):
+    """IN FRAME name: the frame of the cell that poses count in and the tool is led in."""
+
+    name: Name
+
+
+@dataclass(frozen=True, slots=True)
 class Move(Node):
-    """MOVE or MOVE_INC (`incremental`); the parenthesised list of a PATH is opened into `targets`."""
+    """MOVE or MOVE_INC (`incremental`); the parenthesised list of a PATH is opened into `targets`.
+
+    `frames` are those of its IN FRAME; more than one is a mistake.
+    """
 
     kind: MotionKind
     path: bool
     incremental: bool
     targets: tuple[Expression, ...]
+    frames: tuple[InFrame, ...]
     params: tuple[MoveParam, ...]
     clauses: tuple[WithClause, ...]
+
+    @property
+    def frame(self) -> Name | None:
+        """Name of the frame that it goes in, None for R_BASE."""
+        return self.frames[0].name if self.frames else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,9 +136,10 @@ class ObstacleEnd(Node):
 
 @dataclass(frozen=True, slots=True)
 class Reconfiguration(Node):
-    """RECONFIGURATION target: a motion of the posture alone."""
+    """RECONFIGURATION target: a motion of the posture alone; `frame` is that in which the tool stays."""
 
     target: Expression
+    frame: InFrame | None = None
 
 
 @dataclass(frozen=True, slots=True)

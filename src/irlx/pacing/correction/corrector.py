@@ -33,6 +33,7 @@ from irlx.pacing.correction.tool_offset import corrected_pose, correction_betwee
 from irlx.pacing.correction.tool_rates import ToolRates
 from irlx.pacing.errors import PacingError
 from irlx.pacing.executed import Executed
+from irlx.pacing.frames import frame_of
 from irlx.pacing.impossible import joint_value
 from irlx.pacing.pacer import Pacer
 from irlx.promises import PATH_ORIENTATION, PATH_POSITION
@@ -84,8 +85,8 @@ class Corrector:
         self._pacer = pacer
         setup = pacer.setup
         self._rates, self._senses = rates, senses
-        self._solver = TickSolver(setup.kinematics, pacer.qp, NEWTON_STEPS)
-        self._modelled = setup.kinematics
+        self._solver = TickSolver(setup.kinematics.of_pose, pacer.qp, NEWTON_STEPS)
+        self._modelled = setup.kinematics.of_pose
         rotation, position = setup.kinematics.tool_pose(setup.start)
         start = PlannedRow(setup.start, rotation, position, setup.start, setup.start, None)
         self._now = uncorrected(start)
@@ -123,6 +124,7 @@ class Corrector:
         parts: list[Executed] = []
         for executed in source:
             if executed.rows is not None:
+                self._check_frame(executed.block)
                 parts.append(executed)
             if not goes_on(executed.rows, bool(parts)) and parts:
                 break
@@ -130,10 +132,16 @@ class Corrector:
         free = self._pacer.options.free_joints(self._now.q.size)
         return planned_motion(parts, limits or self._pacer.setup.limits, free)
 
+    def _check_frame(self, block: Block) -> None:
+        """What is corrected is where the tool is in the world: IRL440 for a block that leads it elsewhere."""
+        frame = frame_of(block)
+        if frame is not None:
+            raise PacingError(report("IRL440", self._pacer.locate(block.origin), frame=frame.name))
+
     def _surroundings(self, motion: PlannedMotion) -> Surroundings:
         setup = self._pacer.setup
-        if setup.kinematics is not self._solver.kinematics:
-            self._solver = TickSolver(setup.kinematics, self._pacer.qp, NEWTON_STEPS)
+        if setup.kinematics.of_pose is not self._solver.kinematics:
+            self._solver = TickSolver(setup.kinematics.of_pose, self._pacer.qp, NEWTON_STEPS)
         limiter = OffsetLimiter(correction_limits(motion.limits), setup.dt)
         clearance = self._pacer.clearance
         return Surroundings(self._solver, setup.weights, motion.free, limiter, self._rates, clearance)

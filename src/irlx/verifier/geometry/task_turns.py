@@ -91,11 +91,12 @@ def _moved(robot: RobotDescription) -> NDArray[np.bool_]:
     """About which axes (3,) of the frame joints turn the tool at postures without any pattern."""
     count = len(robot.axes)
     q = np.sin(np.outer(1.7 + np.arange(POSTURES), np.arange(1.0, count + 1.0)))
-    links = [joint.child for joint in robot.moving]
+    moving = [joint for joint in robot.moving if joint in robot.chain]
+    links = [joint.child for joint in moving]
     frame = robot.tip if robot.task_frame is None else robot.task_frame
     _, _, rotations = forward_of_links(robot, q, {frame, *links})
     found = np.zeros(3, dtype=np.bool_)
-    for joint in robot.moving:
+    for joint in moving:
         if joint.kind is not JointKind.PRISMATIC:
             axes = rotations[joint.child] @ np.array(joint.axis)
             seen = np.einsum("nji,nj->ni", rotations[frame], axes)

@@ -14,6 +14,7 @@ from irlx.blocks import (
     FreezeBlock,
     JointIncrement,
     JointTarget,
+    LinkFrame,
     MoveBlock,
     ObstacleBlock,
     PoseIncrement,
@@ -62,7 +63,8 @@ class ClosureChecks:
         self._returns = _possible_returns(evidence)
         self._starts = {found.start for found in self._returns.values()}
         self._ids = {found.start: found.option for found in self._returns.values()}
-        self._poses: dict[int, list[Pose]] = {}
+        self._poses: dict[tuple[int, LinkFrame | None], list[Pose]] = {}
+        self._seen_from = {(found.start, found.move.block.frame) for found in self._returns.values()}
         self._moves = {move.block.id: move for move in evidence.moves if move.last > move.start}
         self._at_start: Pose | None = None
         self._count, self._judged = 0, 0
@@ -72,11 +74,11 @@ class ClosureChecks:
 
     def take(self, rows: Rows) -> None:
         """Add a portion."""
-        for start in sorted(self._starts):
+        for start, frame in self._seen_from:
             place = rows.place(start)
             if place is not None:
-                own = rows.pose(place, self._ids[start])
-                self._poses.setdefault(start, []).append((own[0], self._attitude(own[1], start)))
+                own = rows.pose_in(place, self._ids[start], frame)
+                self._poses.setdefault((start, frame), []).append((own[0], self._attitude(own[1], start)))
         self._watch_positions(rows)
         for stretch in rows.stretches:
             move, found = self._moves.get(stretch.block), self._returns.get(stretch.block)
@@ -91,7 +93,7 @@ class ClosureChecks:
                 if move.last in self._starts and goal is not None:
                     # Where the tool was told to stand counts as where it stands.
                     told = goal[0], self._attitude(goal[1], move.last)
-                    self._poses.setdefault(move.last, []).append(told)
+                    self._poses.setdefault((move.last, move.block.frame), []).append(told)
                 if found is not None and goal is not None:
                     self._end(int(stretch.rows[-1]), found, goal)
 
@@ -153,7 +155,8 @@ class ClosureChecks:
 
         A limit excuses the joints that it kept from their values, not others.
         """
-        if not any(_same_pose(goal, pose) for pose in self._poses[found.start]):
+        at_start = self._poses[found.start, found.move.block.frame]
+        if not any(_same_pose(goal, pose) for pose in at_start):
             return
         evidence = self._evidence
         difference = np.abs(evidence.posture(row) - evidence.posture(found.start))

@@ -85,7 +85,8 @@ class ToolChecks:
 
     def take(self, rows: Rows) -> None:
         """Add a portion."""
-        positions, rotations = (rows.positions[1:], rows.rotations[1:]) if self._tells else self._told(rows)
+        in_world = rows.in_world[0][1:], rows.in_world[1][1:]
+        positions, rotations = in_world if self._tells else self._told(rows)
         apart = np.linalg.norm(rows.tool[:, :3] - positions, axis=1)
         self._position.add(rows.rows, apart, TOOL_POSITION)
         quaternions = rows.tool[:, 3:]
