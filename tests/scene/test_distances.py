@@ -4,6 +4,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from irlx.cell.named import named_section
 from irlx.cell.packaged import packaged_urdf
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.urdf import read_urdf
@@ -256,3 +257,30 @@ def test_what_is_surely_clear_is_clear(name):
         assert not (between and near[1])
         sure += ahead > 0 or between
     assert sure > 10
+
+
+@pytest.mark.req("TRF-23")
+def test_levers_bound_what_two_arms_come_nearer():
+    """Arms on different branches move against each other, whatever the order of their joints."""
+    section = named_section("dual14")
+    twins = Kinematics(read_urdf(packaged_urdf("dual14"), section.tip, {}, tuple(section.hands)))
+    solids = twins.description.solids
+    pairs = [
+        WatchedPair(left, solids[left][0], right, solids[right][0], 0.0, 1.0)
+        for left in sorted(solids)
+        if left.startswith("left")
+        for right in sorted(solids)
+        if right.startswith("right")
+    ]
+    found = Distances(twins, pairs)
+    every = np.arange(len(pairs))
+    rng = np.random.default_rng(8)
+    most = 0.0
+    for _ in range(20):
+        q = rng.uniform(-1.0, 1.0, 14)
+        step = rng.uniform(-0.02, 0.02, 14) * (rng.random(14) < 0.5)
+        nearer = found.of(q, every).distance - found.of(q + step, every).distance
+        bound = found._levers.moved(q, q + step)
+        assert np.all(nearer <= bound + 1e-9)
+        most = max(most, float(np.max(nearer / np.maximum(bound, 1e-12))))
+    assert most > 0.2

@@ -269,6 +269,20 @@ class Kinematics:
         pin.computeJointJacobians(self.model, self.data, self.expanded(q))
         return np.array(pin.getFrameJacobian(self.model, self.data, self._tip_frame, _LOCAL))
 
+    @cached_property
+    def carried(self) -> Array:
+        """1 at (i, j) where joint i of `model` carries joint j and is another one, else 0, (N, N)."""
+        found = np.zeros((self.model.nv, self.model.nv))
+        for joint in range(1, self.model.njoints):
+            found[[above - 1 for above in self.model.supports[joint] if above], joint - 1] = 1.0
+        np.fill_diagonal(found, 0.0)
+        return found
+
+    @cached_property
+    def nearer_tool(self) -> Array:
+        """1 at (i, j) where joint j of `model` comes after joint i on the way to the tool, else 0, (N, N)."""
+        return np.triu(np.ones((self.model.nv, self.model.nv)), 1)
+
     def difference_derivative(self, q: Array, target: pin.SE3) -> tuple[Array, Array]:
         """What `difference` gives first and its exact derivative by q, (m, n), also far from the target.
 

@@ -99,6 +99,17 @@ class RelativeKinematics(Kinematics):
         pin.computeJointJacobians(self.model, self.data, self.expanded(q))
         return self._motions(self._seen())
 
+    @cached_property
+    def nearer_tool(self) -> Array:
+        """1 at (i, j) where joint j comes after joint i on the way from F through the root to the tool."""
+        places = np.arange(self.model.nv)
+        of_tool = set(self.model.supports[self.model.frames[self._tip_frame].parentJoint])
+        for joint in self.model.supports[self.model.frames[self._seen_by].parentJoint]:
+            if joint not in of_tool:
+                # On this arm the way leads from its hand to its base.
+                places[joint - 1] = -joint
+        return (places[None] > places[:, None]).astype(np.float64)
+
     def _motions(self, pose: pin.SE3) -> Array:
         of_tool = pin.getFrameJacobian(self.model, self.data, self._tip_frame, _LOCAL)
         of_frame = pin.getFrameJacobian(self.model, self.data, self._seen_by, _LOCAL)

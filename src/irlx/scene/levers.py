@@ -44,19 +44,22 @@ class Levers:
         lengths = [float(np.linalg.norm(place.translation)) for place in kinematics.model.jointPlacements]
         axes = kinematics.description.moving
         n = len(axes)
+        carriers = [_carriers(kinematics, body) for body in bodies]
+        carried = np.zeros((len(bodies), n), dtype=bool)
         fixed = np.zeros((len(bodies), n))
         drawn = {k: np.zeros((len(bodies), n)) for k, axis in enumerate(axes) if axis.is_prismatic}
-        for solid, (body, radius) in enumerate(zip(bodies, radii, strict=True)):
+        for solid, radius in enumerate(radii):
             way = radius
-            for joint in range(body - 1, -1, -1):
+            for joint in carriers[solid]:
+                carried[solid, joint] = True
                 fixed[solid, joint] = 1.0 if axes[joint].is_prismatic else way
                 way += lengths[joint + 1]
             for slide, added in drawn.items():
-                turning = [joint for joint in range(min(slide, body)) if not axes[joint].is_prismatic]
-                added[solid, turning] = float(slide < body)
+                if carried[solid, slide]:
+                    before = carriers[solid][carriers[solid].index(slide) + 1 :]
+                    added[solid, [joint for joint in before if not axes[joint].is_prismatic]] = 1.0
         # What carries both moves neither against the other.
-        index, carriers = np.arange(n), np.array(bodies, dtype=np.intp)
-        apart = index >= np.minimum(carriers[first], carriers[second])[:, None]
+        apart = ~(carried[first] & carried[second])
         by_axes = _sizes_by_axes(kinematics)
         pairs = (apart * (fixed[first] + fixed[second])) @ by_axes
         values, offsets = (
@@ -85,6 +88,15 @@ class Levers:
             ends = np.abs(before @ value + offset), np.abs(after @ value + offset)
             bound = bound + np.maximum(*ends)[..., None] * (way @ added.T)
         return np.asarray(bound)
+
+
+def _carriers(kinematics: Kinematics, body: int) -> list[int]:
+    """The moving joints that carry a joint of `model`, itself the first and the one at the root the last."""
+    found = []
+    while body > 0:
+        found.append(body - 1)
+        body = int(kinematics.model.parents[body])
+    return found
 
 
 def _sizes_by_axes(kinematics: Kinematics) -> Array:

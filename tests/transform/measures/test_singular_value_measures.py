@@ -128,7 +128,8 @@ def double_posture(robot, q):
     for _ in range(40):
         jacobian = scaled_jacobian(robot.kinematics, q)
         left, singular, right = np.linalg.svd(jacobian, full_matrices=False)
-        change = np.einsum("ca,cij,bi->abj", left[:, -2:], jacobian_derivative(jacobian), right[-2:])
+        slope = jacobian_derivative(jacobian, robot.kinematics.nearer_tool)
+        change = np.einsum("ca,cij,bi->abj", left[:, -2:], slope, right[-2:])
         rows = np.array([0.5 * (change[0, 0] - change[1, 1]), 0.5 * (change[0, 1] + change[1, 0])])
         step = np.linalg.lstsq(rows, np.array([0.5 * (singular[-1] - singular[-2]), 0.0]), rcond=None)[0]
         q = q + step * min(1.0, 0.2 / max(np.abs(step).max(), 1e-20))

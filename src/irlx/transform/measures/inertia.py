@@ -34,7 +34,8 @@ def inertia_derivative(kinematics: Kinematics, q: Array) -> Array:
 
     With S_i the axis of joint i as a twist in the world, Y_i the inertia of all links from joint i on, and
     the earlier joints thought to move against the world instead of the later ones,
-    dM_ik / dq_j = <[S_i, S_j], Y_max(j, k) S_k> for i before j, plus the same with i and k exchanged.
+    dM_ik / dq_j = <[S_i, S_j], Y_max(j, k) S_k> for i that carries j, plus the same with i and k exchanged;
+    Y_max is that of the carried one of the two, and nothing for joints on different branches.
     """
     model, data = kinematics.model, kinematics.data
     pin.crba(model, data, kinematics.expanded(q), pin.Convention.WORLD)
@@ -42,9 +43,10 @@ def inertia_derivative(kinematics: Kinematics, q: Array) -> Array:
     inertias = np.array([inertia.matrix() for inertia in data.oYcrb.tolist()[1:]])
     momenta = inertias @ axes
     own = np.einsum("kck->ck", momenta)
-    joints = np.arange(model.nv)
-    momenta = np.where(joints[:, None, None] < joints, own, momenta)
-    half = jacobian_derivative(axes).transpose(2, 1, 0) @ momenta
+    carried = kinematics.carried
+    apart = (carried + carried.T + np.eye(model.nv)) == 0.0
+    momenta = np.where(carried[:, None] > 0.0, own, np.where(apart[:, None], 0.0, momenta))
+    half = jacobian_derivative(axes, carried).transpose(2, 1, 0) @ momenta
     found = (half + half.transpose(0, 2, 1)).transpose(1, 2, 0)
     if kinematics.coupling is not None:
         a = kinematics.coupling

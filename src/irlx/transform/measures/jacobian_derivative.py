@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 
 from irlx.transform.measures.measure import Array
@@ -23,18 +21,14 @@ def _bracket() -> Array:
 _BRACKET = _bracket()
 
 
-@cache
-def _moved(joints: int) -> Array:
-    """1 at (i, j) where joint j comes after joint i, else 0, shape (n, n)."""
-    return np.triu(np.ones((joints, joints)), 1)
-
-
-def jacobian_derivative(jacobian: Array) -> Array:
+def jacobian_derivative(jacobian: Array, nearer_tool: Array) -> Array:
     """Derivative of a Jacobian in the tool frame, shape (6, n), by q: shape (6, n, n), joint of q last.
+
+    `nearer_tool` (n, n) is 1 at (i, j) where joint j comes after joint i on the way to the tool, else 0.
 
     Column i of the Jacobian is the axis of joint i seen from the tool. A step of a later joint j moves the
     tool, and so the frame it is seen from, by the twist J_j: dJ_i / dq_j = [J_i, J_j] for j after i, else 0,
     with the Lie bracket [a, b] = (w_a x v_b + v_a x w_b, w_a x w_b) of twists (v, w). Holds in any unit of
     length.
     """
-    return np.asarray(jacobian.T @ (_BRACKET @ jacobian) * _moved(jacobian.shape[1]))
+    return np.asarray(jacobian.T @ (_BRACKET @ jacobian) * nearer_tool)

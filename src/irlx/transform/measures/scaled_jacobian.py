@@ -39,11 +39,11 @@ def task_jacobian_derivative(kinematics: Kinematics, q: Array) -> tuple[Array, A
     rows, description = list(kinematics.task.rows), kinematics.description
     if kinematics.coupling is None and description.task_frame is None:
         jacobian = scaled_jacobian(kinematics, q)
-        slope = jacobian_derivative(jacobian)
+        slope = jacobian_derivative(jacobian, kinematics.nearer_tool)
         return (jacobian, slope) if kinematics.task.is_whole else (jacobian[rows], slope[rows])
     jacobian = kinematics.tool_motions(q)
     jacobian[:3] /= description.reach
-    slope = jacobian_derivative(jacobian)
+    slope = jacobian_derivative(jacobian, kinematics.nearer_tool)
     if description.task_frame is not None:
         # Joints behind the frame turn the tool, and all that is seen from it, against the frame.
         behind = np.arange(jacobian.shape[1]) >= kinematics.body_of(description.task_frame)[0]
