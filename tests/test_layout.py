@@ -34,6 +34,7 @@ WIRING = {
     "program",
     "checking",
     "dry_run",
+    "first_program",
     "verification",
     "registration",
     "conformance",

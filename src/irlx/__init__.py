@@ -14,6 +14,7 @@ from irlx._version import __version__
 
 if TYPE_CHECKING:
     from irlx.cell.errors import CellError
+    from irlx.cell.robot_check.check import check_robot
     from irlx.checking import check
     from irlx.conversion import convert
     from irlx.diagnostics import Diagnostic, IrlxError
@@ -48,6 +49,7 @@ _HOMES = {
     "Sample": "irlx.streams.sample",
     "StreamError": "irlx.streams.error",
     "check": "irlx.checking",
+    "check_robot": "irlx.cell.robot_check.check",
     "convert": "irlx.conversion",
     "format_source": "irlx.language.format",
     "load": "irlx.program",
@@ -78,6 +80,7 @@ __all__ = [
     "StreamError",
     "__version__",
     "check",
+    "check_robot",
     "convert",
     "format_source",
     "load",

@@ -21,6 +21,10 @@ PATH_ORIENTATION = 1e-6
 TOLERANCE_BAND = 1e-9
 """Largest amount by which the tool passes a band of WITH TOLERANCE, m or rad."""
 
+FOLLOWED_TURN = 1e-4
+"""Largest angle by which a robot with fewer axes may be off a target in a turn that its task leaves out and
+that follows from the task's own coordinates, rad: what targets typed by hand lack."""
+
 PATH_STEP = 1e-9
 """What rounding of a tool pose may pretend, m or rad. Never backwards, never faster than programmed: a step
 along the path may be shorter than 0 by this, speeds of the tool exceed by 2 PATH_STEP/dt, accelerations by

@@ -209,8 +209,9 @@ def stream(
     displacement (m) and the rotation vector (rad) from the programmed pose in its own frame, or None for no
     change. Motions are then planned with three quarters of the joints' speed and acceleration limits, and
     corrections follow within the rest; `SampleStream.corrections` reports what was delayed. Raises IrlxError
-    with IRL583 for a cell with constraints, IRL006 for what is no function; at a sample IRL580, IRL581,
-    IRL582 for an answer that is none, IRL584 for a correction for which new limits leave no room.
+    with IRL438 for a task in the frame of a link, IRL583 for a cell with constraints, IRL006 for what is no
+    function; at a sample IRL580, IRL581, IRL582 for an answer that is none, IRL584 for a correction for which
+    new limits leave no room.
 
     `obstacles` is asked after each sample, and before a motion is planned, where obstacles of the cell are in
     the next one: a mapping from names to three numbers, the position (m) of the obstacle's frame in the
@@ -229,6 +230,9 @@ def stream(
             raise IrlxError(report("IRL006", option=option, value=repr(given), cause="a function"))
     sightings = None if obstacles is None else Sightings()
     execution = Execution(job, planned_share=1.0 - CORRECTION_SHARE, sightings=sightings)
+    frame = execution.kinematics.description.task_frame
+    if frame is not None:
+        raise IrlxError(report("IRL438", frame=frame))
     if execution.kinematics.constraints:
         names = ", ".join(one.name for one in execution.kinematics.constraints)
         raise IrlxError(report("IRL583", names=names))

@@ -46,7 +46,12 @@ def test_a_byte_order_mark_is_no_fault(cell, koch):
             "; did you mean 'robot'?",
             "robot, motion, frames, constraint, obstacle",
         ),
-        ("[robot]\nmodl = 1\n", "robot.modl", "; did you mean 'model'?", "model, tip, locked, task, start"),
+        (
+            "[robot]\nmodl = 1\n",
+            "robot.modl",
+            "; did you mean 'model'?",
+            "model, tip, locked, origins, task, task_frame, free, start",
+        ),
         ("[robot.limits]\nspeeed = 1\n", "robot.limits.speeed", "; did you mean 'speed'?", "position, speed"),
         ("[robot.limits]\njerk = 1\n", "robot.limits.jerk", "", "position, speed, acceleration"),
         ("[motion]\ntick = 3\n", "motion.tick", "; did you mean 'tick_ms'?", "tick_ms, speed, acc"),

@@ -50,6 +50,7 @@ def test_names():
         "arm7",
         "dual14",
         "gantry9",
+        "irb6",
         "koch11",
         "mobile8",
         "mobile9",

@@ -243,6 +243,17 @@ def test_corrections_are_refused(written):
     assert "IRL440" in {one.code for one in caught.value.diagnostics}
 
 
+def test_a_task_that_leaves_turns_out_is_refused(written):
+    written(f"MOVE LIN POSE(POSITION(30, 0, 20), {DOWN}) IN FRAME pipe;")
+    cell = Path("p.toml").read_text(encoding="utf-8")
+    task = 'model = "dual14"\ntask = ["x", "y", "z", "rx", "ry"]\nfree = ["rz"]'
+    Path("p.toml").write_text(cell.replace('model = "dual14"', task), encoding="utf-8")
+    with pytest.raises(irlx.IrlxError) as caught:
+        irlx.run("p.irl")
+    assert [one.code for one in caught.value.diagnostics if one.is_error] == ["IRL442"]
+    assert "leaves out rz" in str(caught.value.reason)
+
+
 def test_returns_in_the_frame_are_told(ran):
     there = f"MOVE LIN POSE(POSITION(30, 0, 20), {DOWN}) IN FRAME pipe;"
     away = "MOVE LIN POSITION(-30, 20, 30), POSITION(30, 0, 20) IN FRAME pipe;"

@@ -22,6 +22,7 @@ CODES = [
 ]
 IN_WORDS = {
     "IRL440",
+    "IRL442",
     "IRL515",
     "IRL090",
     "IRL229",
@@ -42,7 +43,7 @@ IN_WORDS = {
     "IRL645",
 }
 """Codes that no small program for the packaged robot brings about: their pages say so in words."""
-IN_PYTHON = {"IRL580", "IRL581", "IRL582", "IRL583", "IRL584", "IRL585", "IRL586", "IRL587"}
+IN_PYTHON = {"IRL438", "IRL580", "IRL581", "IRL582", "IRL583", "IRL584", "IRL585", "IRL586", "IRL587"}
 """Codes of what is given in Python: their pages show that."""
 
 PLAIN_PROGRAM = "PROGRAM demo;\nBEGIN\n  MOVE LIN POSITION(11400, 1000, 3500);\nENDPROGRAM\n"

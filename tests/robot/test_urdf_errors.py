@@ -57,7 +57,13 @@ BROKEN = {
     ),
     "mimic": (
         robot(joint(inside='<mimic joint="k"/>')),
-        "joint 'j' moves the tool and mimics another one; lock it",
+        "joint 'j' moves the tool and mimics 'k', which does not exist; lock it",
+    ),
+    "mimic of itself": (robot(joint(inside='<mimic joint="j"/>')), "joint 'j' follows itself"),
+    "mimic of nobody": (robot(joint(inside="<mimic/>")), "joint 'j', mimic: it names no joint"),
+    "mimic by no number": (
+        robot(joint(inside='<mimic joint="k" multiplier="x"/>')),
+        "joint 'j', mimic: multiplier holds 'x', which is no number",
     ),
     "no child": (
         "<robot name='r'><link name='a'/><joint name='j' type='fixed'><parent link='a'/></joint></robot>",

@@ -87,7 +87,9 @@ def _arm(model: str):
         axis = joint.find("axis")
         along = np.array([1.0, 0.0, 0.0]) if axis is None else _numbers(axis.get("xyz"))
         names = joint.find("parent").get("link"), joint.find("child").get("link")
-        joints.append((joint.get("name"), joint.get("type"), *names, _origin(joint), along))
+        mimic = joint.find("mimic")
+        led = None if mimic is None else (mimic.get("joint"), float(mimic.get("multiplier")))
+        joints.append((joint.get("name"), joint.get("type"), *names, _origin(joint), along, led))
     solids = {
         link.get("name"): [(_solid(c), _origin(c)) for c in link.iter("collision")]
         for link in root.iter("link")
@@ -98,9 +100,9 @@ def _arm(model: str):
 def _links(joints, values: dict[str, float]) -> dict[str, Pose]:
     """Poses of all links; joints of a URDF of ours stand in the order of the chain."""
     poses = {joints[0][2]: (np.zeros(3), np.eye(3))}
-    for name, kind, parent, child, origin, axis in joints:
+    for name, kind, parent, child, origin, axis, led in joints:
         at = _after(poses[parent], origin)
-        value = values.get(name, 0.0)
+        value = values.get(name, 0.0) if led is None else led[1] * values[led[0]]
         if kind == "prismatic":
             at = _after(at, (axis * value, np.eye(3)))
         elif kind != "fixed":

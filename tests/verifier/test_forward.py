@@ -1,6 +1,7 @@
 """The verifier's kinematics and rotations against Pinocchio and SciPy."""
 
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pinocchio as pin
@@ -69,7 +70,13 @@ def test_every_named_robot_against_pinocchio(name: str, tmp_path: Path) -> None:
     """Its URDF read by Pinocchio itself, other moving joints at zero or at their locked values."""
     (tmp_path / "cell.toml").write_text(f'[robot]\nmodel = "{name}"\n', encoding="utf-8")
     robot = load_cell(tmp_path / "cell.toml").robot
-    model = pin.buildModelFromXML(named_urdf(name, Place(name)))
+    text = named_urdf(name, Place(name))
+    model = pin.buildModelFromXML(text)
+    followers = {
+        joint.get("name"): joint.find("mimic").attrib
+        for joint in ElementTree.fromstring(text).findall("joint")
+        if joint.find("mimic") is not None and joint.get("name") in {one.name for one in robot.moving}
+    }
     data, frame = model.createData(), model.getFrameId(robot.tip)
     rng = np.random.default_rng(4)
     q = rng.uniform(-2.0, 2.0, (8, len(robot.axes)))
@@ -78,7 +85,9 @@ def test_every_named_robot_against_pinocchio(name: str, tmp_path: Path) -> None:
     for row, values in enumerate(q):
         configuration = pin.neutral(model)
         held = {name: value for name, value in robot.locked.items() if model.existJointName(name)}
-        for joint_name, value in {**held, **dict(zip(robot.joint_names, values, strict=True))}.items():
+        led = dict(zip(robot.joint_names, values, strict=True))
+        led |= {one: float(by["multiplier"]) * led[by["joint"]] for one, by in followers.items()}
+        for joint_name, value in {**held, **led}.items():
             joint = model.joints[model.getJointId(joint_name)]
             wide = [np.cos(value), np.sin(value)] if joint.nq == 2 else [value]
             configuration[joint.idx_q : joint.idx_q + joint.nq] = wide

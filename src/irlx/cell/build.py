@@ -33,7 +33,7 @@ def build_cell(content: CellFile, robot_section: RobotSection, robot: RobotDescr
     """
     errors: list[Diagnostic] = []
     count = len(robot.axes)
-    limits = _limits(robot_section.limits, robot, file, errors)
+    limits = limits_of(robot_section.limits, robot, file, errors)
     start = _joint_list(robot_section.start, "robot.start", [0.0] * count, count, file, errors)
     weights = _joint_list(
         robot_section.weights, "robot.weights", [float(count - i) for i in range(count)], count, file, errors
@@ -112,9 +112,10 @@ def _status_joints(
             errors.append(report("IRL606", Place(file, key=key), **data))
 
 
-def _limits(
+def limits_of(
     section: LimitsSection, robot: RobotDescription, file: str, errors: list[Diagnostic]
 ) -> JointLimits:
+    """Limits (SI) of a robot's axes: those of the cell, else of its URDF. Faults go to `errors`."""
     axes = robot.axes
     limits = JointLimits.unlimited(len(axes))
     speed = np.array([joint.speed for joint in axes])

@@ -76,6 +76,11 @@ def mesh_faults(robot: RobotDescription, model: str, cell_file: str) -> list[Dia
     return list(faults.values())
 
 
+def find_mesh(name: str, folder: Path) -> Path | None:
+    """The file that a URDF in `folder` means by the name of a mesh, None where there is none."""
+    return next(filter(is_file, _candidates(name, folder)), None)
+
+
 def _all_solids(robot: RobotDescription) -> Iterator[Solid]:
     return (solid for solids in robot.solids.values() for solid in solids)
 
@@ -89,7 +94,7 @@ def _meshes(robot: RobotDescription) -> Iterator[tuple[str, Mesh]]:
 def _found(solid: Solid, folder: Path) -> Solid:
     if not isinstance(solid.shape, Mesh):
         return solid
-    path = next(filter(is_file, _candidates(solid.shape.file, folder)), None)
+    path = find_mesh(solid.shape.file, folder)
     return solid if path is None else replace(solid, shape=replace(solid.shape, file=str(path)))
 
 

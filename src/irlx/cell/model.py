@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -16,9 +15,10 @@ from irlx.cell.named import named_section, named_urdf, robot_names, urdf_folder
 from irlx.cell.packaged import packaged_names
 from irlx.cell.robot_data import robot_data_folder
 from irlx.cell.schema import RobotSection, Section, SelfCollisionSection
+from irlx.cell.task import with_origins, with_task
 from irlx.diagnostics import Place, report
 from irlx.diagnostics.diagnostic import near_matches
-from irlx.robot.description import COORDINATES, RobotDescription
+from irlx.robot.description import RobotDescription
 from irlx.robot.urdf import read_urdf
 from irlx.robot.urdf_values import RobotModelError
 
@@ -103,7 +103,7 @@ def load_robot(
     Joints that lead to its other hands and to the links `bound`, by the keys of the cell that name them, are
     axes as well. Raises CellError: IRL610 no model, IRL611 unknown name or missing file, IRL612 a URDF that
     cannot be used, IRL613 fewer axes than its task has coordinates, IRL614 a robot of an extra that is not
-    installed, IRL615 a task that leaves out what joints move, IRL643 a link that the robot does not have.
+    installed, IRL643 a link that the robot does not have; those of `with_origins` and `with_task`.
     """
     place = Place(file, key="robot.model")
     model = section.model
@@ -115,33 +115,20 @@ def load_robot(
     carriers = _carriers(section, held, file, bound)
     slides = {joint.name for joint in held.joints if joint.is_prismatic}
     locked = {name: value * (1e-3 if name in slides else _DEGREE) for name, value in section.locked.items()}
-    robot = _read(text, section, locked, file, carriers)
-    robot = with_mesh_files(robot, urdf_folder(model, folder))
-    task = section.task
-    if task is None and model in robot_names():
-        task = named_section(model).task
-    if task is not None:
-        robot = replace(robot, coordinates=tuple(name for name in COORDINATES if name in task))
-    if len(robot.axes) < len(robot.coordinates):
-        names = ", ".join(robot.joint_names) or "none"
-        data: dict[str, Any] = {"tip": robot.tip, "found": len(robot.axes), "names": names}
-        raise CellError(report("IRL613", place, rows=len(robot.coordinates), **data))
-    _check_left_out(robot, file)
-    return robot
+    robot = with_mesh_files(_read(text, section, locked, file, carriers), urdf_folder(model, folder))
+    return with_task(with_origins(robot, section, file), _own_task(section), file)
 
 
-def _check_left_out(robot: RobotDescription, file: str) -> None:
-    """Raise CellError, IRL615, for coordinates that the task leaves out although joints move them."""
-    free = [name for name in COORDINATES if name not in robot.coordinates]
-    if not free:
-        return
-    # Imported here: most robots are asked for whole poses, and looking at a cell stays light.
-    from irlx.robot.kinematics import Kinematics
+def _own_task(section: RobotSection) -> RobotSection:
+    """The section, what it does not say of the task as the robot of that name has it."""
+    if section.model not in robot_names():
+        return section
+    own = named_section(section.model)
+    given = {name: getattr(section, name) for name in _OF_TASK if name in section.model_fields_set}
+    return section.model_copy(update={name: getattr(own, name) for name in _OF_TASK} | given)
 
-    fixed = Kinematics(robot).immovable.coordinates
-    moved = [name for name in free if name not in fixed]
-    if moved:
-        raise CellError(report("IRL615", Place(file, key="robot.task"), names=", ".join(moved)))
+
+_OF_TASK = ("task", "task_frame", "free")
 
 
 def _carriers(

@@ -17,6 +17,7 @@ Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
 Percent = Annotated[float, Field(gt=0.0, le=100.0)]
 Coordinate = Literal["x", "y", "z", "rx", "ry", "rz"]
+FreeTurn = Literal["rx", "ry", "rz"]
 Vector = Annotated[list[Number], Field(min_length=3, max_length=3)]
 PlanePoint = Annotated[list[Number], Field(min_length=2, max_length=2)]
 
@@ -106,13 +107,27 @@ class SelfCollisionSection(Section):
     influence: NotNegative = 30.0
 
 
+class OriginSection(Section):
+    """Where a joint sits in its parent link instead of where the URDF has it: mm, deg about fixed x, y, z."""
+
+    xyz: Vector | None = None
+    rpy: Vector | None = None
+
+
 class RobotSection(Section):
-    """The robot: model, tool frame, other hands, locked joints, coordinates of its task, posture, weights."""
+    """The robot: model, tool frame, other hands, locked joints, origins of joints, task, posture, weights.
+
+    `task` are coordinates of the tool pose in the frame of the link `task_frame`, by default the tool's own;
+    `free` are turns that are left to the joints.
+    """
 
     model: str | None = None
     tip: str | None = None
     locked: dict[str, Number] = Field(default_factory=dict)
+    origins: dict[str, OriginSection] = Field(default_factory=dict)
     task: Annotated[list[Coordinate], Field(min_length=1)] | None = None
+    task_frame: str | None = None
+    free: list[FreeTurn] = Field(default_factory=list)
     start: list[Number] | None = None
     weights: list[Positive] | None = None
     status_joints: list[str] = Field(default_factory=list)

@@ -44,8 +44,9 @@ def posture_beyond(situation: Situation, move: MoveBlock, in_force: LimitsInForc
     told = posed(move, situation.kinematics, start, situation.q)
     rotation, position = end_of_move(told, start, place)
     x, y, z = position.tolist()
+    kept = isinstance(told.target, PoseTarget) and told.target.orientation is None
     a, b, c, d = Rotation.from_matrix(rotation).as_quat().tolist()
-    target = PoseTarget((x, y, z), (a, b, c, d))
+    target = PoseTarget((x, y, z), None if kept else (a, b, c, d))
     return posture_within(move.tolerance, target, None, situation, in_force, place)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
@@ -9,10 +11,10 @@ from scipy.spatial.transform import Rotation
 from irlx.blocks import MoveBlock, PoseTarget
 from irlx.diagnostics import Place, report
 from irlx.pacing.errors import PacingError
+from irlx.pacing.left_out import frame_words
 from irlx.promises import CONDITION, PATH_ORIENTATION, PATH_POSITION
 from irlx.robot.equality import Constraint
 from irlx.robot.kinematics import Kinematics
-from irlx.robot.task import partial_difference
 
 Array = NDArray[np.float64]
 
@@ -32,13 +34,10 @@ def check_can_move(target: PoseTarget, kinematics: Kinematics, q: Array, place: 
     fixed = kinematics.immovable
     if not fixed.size:
         return
-    rotation, position = kinematics.tool_pose(q)
-    wanted = rotation
+    wanted, _ = kinematics.tool_pose(q)
     if target.orientation is not None:
         wanted = np.asarray(Rotation.from_quat(target.orientation).as_matrix())
-    pose = kinematics.target(rotation, position)
-    nothing = np.zeros((6, 0))
-    left, _ = partial_difference(fixed, pose, nothing, kinematics.target(wanted, np.array(target.position)))
+    left = kinematics.left_of(fixed, q, kinematics.target(wanted, np.array(target.position)))
     allowed = np.array([PATH_POSITION if row < 3 else PATH_ORIENTATION for row in fixed.rows])
     if np.any(np.abs(left) > allowed):
         words = ", ".join(
@@ -46,7 +45,8 @@ def check_can_move(target: PoseTarget, kinematics: Kinematics, q: Array, place: 
             for name, row, value, most in zip(fixed.coordinates, fixed.rows, left, allowed, strict=True)
             if abs(value) > most
         )
-        raise PacingError(report("IRL430", place, off=words, robot=kinematics.description.name))
+        data: dict[str, Any] = {"robot": kinematics.description.name, "frame": frame_words(kinematics)}
+        raise PacingError(report("IRL430", place, off=words, **data))
 
 
 def broken_condition(q: Array, kinematics: Kinematics) -> tuple[int, Constraint, float] | None:

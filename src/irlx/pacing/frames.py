@@ -23,7 +23,7 @@ def seen_from(kinematics: Kinematics, frame: LinkFrame | None, place: Place) -> 
     """The robot with the poses of its tool told in a frame, None for the world; for motions to poses.
 
     Constraints that the pose implies are no rows there. Raises PacingError: IRL515 where it has no such link,
-    as in a stream of another robot.
+    as in a stream of another robot; IRL442 where its task leaves turns of the tool to the joints.
     """
     if frame is None:
         return kinematics.of_pose
@@ -32,4 +32,7 @@ def seen_from(kinematics: Kinematics, frame: LinkFrame | None, place: Place) -> 
     if frame.link not in links:
         data: dict[str, Any] = {"name": frame.name, "link": frame.link, "robot": robot.name}
         raise PacingError(report("IRL515", place, near=near_matches(frame.link, links), **data))
+    if kinematics.leaves_turns:
+        left = ", ".join(kinematics.task.left_out)
+        raise PacingError(report("IRL442", place, frame=frame.name, robot=robot.name, left=left))
     return kinematics.relative_to(frame).of_pose

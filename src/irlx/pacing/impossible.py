@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 from numpy.typing import NDArray
 
 from irlx.blocks import LimitKind
@@ -21,6 +22,7 @@ from irlx.pacing.slowdown.ladder import TimedCurve
 from irlx.pacing.slowdown.planned import Refusal
 from irlx.pacing.too_near import told
 from irlx.pacing.walk import Halt
+from irlx.promises import FOLLOWED_TURN
 from irlx.robot.description import RobotDescription
 from irlx.robot.kinematics import Kinematics, Sizes
 from irlx.robot.limits import JointLimits
@@ -280,7 +282,24 @@ def slower_than_allowed(duration: float, programmed: float, longest: float, plac
     return report("IRL525", place, **data)
 
 
-def goal_shortfall(around: Surroundings, rotation: Array, position: Array, q: Array) -> Nearest:
-    """How near the tool can come to a goal pose within the limits, from any of several starts."""
-    approaches = nearest_approach(around.kinematics, rotation, position, q, around.limits, around.free)
-    return closest(approaches, around.kinematics.description.reach)
+def goal_shortfall(
+    around: Surroundings, rotation: Array, position: Array, q: Array, whole: bool = True
+) -> Nearest:
+    """How near the tool can come to a goal pose within the limits, from any of several starts.
+
+    `whole`: what follows from the task's coordinates counts as well.
+    """
+    kinematics = around.kinematics
+    approaches = nearest_approach(kinematics, rotation, position, q, around.limits, around.free)
+    if whole and kinematics.following.size:
+        target = kinematics.target(rotation, position)
+        approaches = [_in_all(found, kinematics, target) for found in approaches]
+    return closest(approaches, kinematics.description.reach)
+
+
+def _in_all(found: Nearest, kinematics: Kinematics, target: pin.SE3) -> Nearest:
+    """What is left of a pose, turns that follow from the task's coordinates included."""
+    turns = kinematics.left_of(kinematics.following, found.q, target)
+    turns = np.where(np.abs(turns) <= FOLLOWED_TURN, 0.0, turns)
+    angle = float(np.hypot(found.angle, np.linalg.norm(turns)))
+    return replace(found, sizes=found.sizes._replace(angle=angle))

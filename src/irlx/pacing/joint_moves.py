@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from irlx.blocks import JointIncrement, JointTarget, MoveBlock
 from irlx.diagnostics import IrlxError, Place, report
@@ -40,33 +41,48 @@ def move_joints(situation: Situation, moves: Sequence[MoveBlock], in_force: Limi
     its place.
     """
     first = _leg(situation, moves[0], in_force)
-    legs = [first, *_further(situation, first, moves[1:], in_force)]
+    legs = [first, *_further(situation, first, moves[0], moves[1:], in_force)]
     plan = plan_joint_chain(legs, situation.q, in_force.limits, situation.robot.joint_names, situation.dt)
     if plan.legs > 1:
         try:
-            return _motion(situation, moves, plan, in_force)
+            return _motion(situation, moves, plan, in_force, legs)
         except PacingError:
             why = "joined to the next one it cannot be done"
             situation.notes.add(lost_blend(legs[0].place, why, legs[1].place))
             names = situation.robot.joint_names
             plan = plan_joint_chain(legs[:1], situation.q, in_force.limits, names, situation.dt)
-    return _motion(situation, moves, plan, in_force)
+    return _motion(situation, moves, plan, in_force, legs)
 
 
 def _further(
-    situation: Situation, first: JointLeg, moves: Sequence[MoveBlock], in_force: LimitsInForce
+    situation: Situation,
+    first: JointLeg,
+    done: MoveBlock,
+    moves: Sequence[MoveBlock],
+    in_force: LimitsInForce,
 ) -> list[JointLeg]:
-    """The legs behind the first one, as far as they can be told before it is done."""
-    legs, before = [], first
+    """The legs behind the first one, that of `done`, as far as they can be told before it is done."""
+    legs, before, asked = [], first, asked_after(situation, done)
     for move in moves:
         # What is to be said of a move is said when it is its turn.
-        there = replace(situation, q=before.end, warnings=[])
+        there = replace(situation, q=before.end, warnings=[], asked=asked)
         try:
             before = _leg(there, move, in_force)
         except IrlxError:
             break
         legs.append(before)
+        asked = asked_after(there, move)
     return legs
+
+
+def asked_after(situation: Situation, block: MoveBlock) -> Array | None:
+    """The orientation (3, 3) asked for at the end of a PTP, None where a posture is."""
+    pose = pose_target(block.target, situation.pose)
+    if pose is None or not situation.kinematics.leaves_turns:
+        return None
+    if pose.orientation is None:
+        return situation.pose[0]
+    return np.asarray(Rotation.from_quat(pose.orientation).as_matrix())
 
 
 def _leg(situation: Situation, block: MoveBlock, in_force: LimitsInForce) -> JointLeg:
@@ -88,13 +104,21 @@ def _leg(situation: Situation, block: MoveBlock, in_force: LimitsInForce) -> Joi
 
 
 def _motion(
-    situation: Situation, moves: Sequence[MoveBlock], plan: PlannedJointChain, in_force: LimitsInForce
+    situation: Situation,
+    moves: Sequence[MoveBlock],
+    plan: PlannedJointChain,
+    in_force: LimitsInForce,
+    legs: Sequence[JointLeg],
 ) -> Motion:
     for note in plan.notes:
         situation.notes.add(note)
     motion, dt, place = plan.motion, situation.dt, situation.locate(moves[0].origin)
+    asked = situation.asked
+    for k, move in enumerate(moves[: plan.legs]):
+        stands = situation.q if k == 0 else legs[k - 1].end
+        asked = asked_after(replace(situation, q=stands, asked=asked), move)
     if motion.ticks == 0:
-        return Motion((None,), in_force, programmed=_programmed(situation, moves[0]))
+        return Motion((None,), in_force, programmed=_programmed(situation, moves[0]), asked=asked)
     count = situation.setup.resolution.rows_of(motion.ticks)
     q = motion.postures(dt, count)
     _check_rows(situation, q, in_force.limits, dt * motion.ticks / count, place)
@@ -114,7 +138,8 @@ def _motion(
         handed = handed_out(rows, moves[: plan.legs], plan.ends)
     last = plan.ends[-1] - (plan.ends[-2] if plan.legs > 1 else 0.0)
     rooms = 0.5 * plan.ends[0], 0.5 * last
-    return Motion(tuple(handed), in_force, rooms=rooms, programmed=_programmed(situation, moves[0]))
+    programmed = _programmed(situation, moves[0])
+    return Motion(tuple(handed), in_force, rooms=rooms, programmed=programmed, asked=asked)
 
 
 def _programmed(situation: Situation, block: MoveBlock) -> Pose | None:

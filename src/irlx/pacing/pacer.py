@@ -97,6 +97,8 @@ class Pacer:
         self._programmed_in: LinkFrame | None = None
         self._programmed: Pose | None = None
         """Where the path of the last move ended in its frame, if it was one WITH TOLERANCE."""
+        self._asked: Array | None = None
+        self._looked_at = set[int]()
 
     def _new_solver(self) -> TickSolver:
         """What solves the ticks: roughly in a dry run."""
@@ -157,6 +159,8 @@ class Pacer:
             self._clear_from_now,
             self._programmed,
             self._programmed_in,
+            self._asked,
+            self._looked_at,
         )
 
     @property
@@ -223,6 +227,7 @@ class Pacer:
             parts.append(Executed(block, tick, self._moved(found, motion.in_force), begins))
             begins = True
         self._rest = motion.rest
+        self._note_asked(motion)
         if motion.rest is not None:
             waiting.insert(0, motion.rest)
         return Carried(tuple(parts), motion.rooms)
@@ -258,7 +263,7 @@ class Pacer:
         situation = self._situation.in_frame(move.frame, place)
         end = posture_beyond(situation, move, situation.in_force(move.limits), place)
         self.tick += ticks_beyond(situation, move, place)
-        self.q, self._programmed = end, None
+        self.q, self._programmed, self._asked = end, None, None
 
     def execute(self, block: Block) -> MotionRows | None:
         """Execute one block; returns the rows of a move (None for a switch or a move of no length).
@@ -268,6 +273,7 @@ class Pacer:
         if isinstance(block, MoveBlock):
             motion, start = self._motion([block]), self._situation.pose[1]
             rows = self._moved(motion.rows[0], motion.in_force)
+            self._note_asked(motion)
             self._last_way = way_of(rows, start, self._setup.dt)
             return rows
         if isinstance(block, ReconfigureBlock):
@@ -278,6 +284,7 @@ class Pacer:
         self._check_switch(block, place)
         if isinstance(block, ToolBlock | WeightsBlock):
             self._setup = refitted(self._setup, block, place)
+            self._asked = None if isinstance(block, ToolBlock) else self._asked
             self._solver = self._new_solver()
         if isinstance(block, ToolBlock):
             self._programmed = None
@@ -341,6 +348,10 @@ class Pacer:
             motion = move_along_path(situation, moves, in_force)
         self._programmed, self._programmed_in = motion.programmed, block.frame
         return motion
+
+    def _note_asked(self, motion: Motion) -> None:
+        """Where joints turn the tool in ways that nobody asks for, keep what was asked for last."""
+        self._asked = motion.asked if self._setup.kinematics.leaves_turns else None
 
     def _check_links(self, place: Place) -> None:
         """Before the first motion: whether the robot stands clear of itself."""

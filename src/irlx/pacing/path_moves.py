@@ -19,6 +19,7 @@ from irlx.pacing.demand import Demand
 from irlx.pacing.drawn_to import check_postures, postures_asked, term_of, warn_of_posture_left
 from irlx.pacing.errors import PacingError
 from irlx.pacing.impossible import Surroundings, explain_failure, goal_shortfall, slower_than_allowed
+from irlx.pacing.left_out import AskedPose, asked_poses, check_on_path, check_points
 from irlx.pacing.motion import Motion
 from irlx.pacing.nearest_rows import NearestRows, nearest_of
 from irlx.pacing.options import LimitsInForce
@@ -29,7 +30,7 @@ from irlx.pacing.rows import MotionRows, PathPart, handed_out, held
 from irlx.pacing.situation import Situation
 from irlx.pacing.tolerance import Widened, narrowed, start_of, widened
 from irlx.promises import PATH_ORIENTATION, PATH_POSITION
-from irlx.robot.task import pose_errors
+from irlx.robot.limits import JointLimits
 
 Array = NDArray[np.float64]
 
@@ -46,7 +47,7 @@ def move_along_path(situation: Situation, moves: Sequence[MoveBlock], in_force: 
     situation = situation.in_frame(moves[0].frame, situation.locate(moves[0].origin))
     check_postures(situation, moves[0], in_force)
     start = start_of(situation, moves[0].tolerance)
-    legs = _legs(situation, moves, start)
+    legs = _legs(situation, moves, start, in_force.limits)
     plan = plan_chain(legs, *start, situation.dt)
     if len(plan.ends) > 1:
         try:
@@ -58,7 +59,7 @@ def move_along_path(situation: Situation, moves: Sequence[MoveBlock], in_force: 
     return _motion(situation, moves, legs, plan, in_force)
 
 
-def _legs(situation: Situation, moves: Sequence[MoveBlock], start: Pose) -> list[Leg]:
+def _legs(situation: Situation, moves: Sequence[MoveBlock], start: Pose, limits: JointLimits) -> list[Leg]:
     """Moves as motions of the tool: the first from `start`, others from where the one before was to end."""
     legs = []
     for move in moves:
@@ -66,6 +67,9 @@ def _legs(situation: Situation, moves: Sequence[MoveBlock], start: Pose) -> list
         check_targets(told, situation.kinematics, situation.q, situation.locate(move.origin))
         legs.append(Leg(told, situation.locate(move.origin)))
         start = end_of_move(told, start, legs[-1].place)
+        if told.path is not None and told.id not in situation.looked_at:
+            situation.looked_at.add(told.id)
+            check_points(asked_poses(told, start, legs[-1].place), situation, limits)
     return legs
 
 
@@ -91,16 +95,19 @@ def _motion(
     drawn = postures_asked(situation, block, plan, in_force, place)
     if plan.ticks == 0:
         warn_of_posture_left(situation, drawn, situation.q, block, place)
-        return Motion((None,), in_force, rest, programmed=_programmed(block, plan))
+        programmed = _programmed(block, plan)
+        return Motion((None,), in_force, rest, programmed=programmed, asked=plan.path.end_rotation)
     start = start_of(situation, block.tolerance)
     way = start, (plan.path.end_rotation, plan.path.end_position)
-    rows = _paced(widened(situation, in_force, drawn, block.tolerance, way), block, plan, place)
+    found = widened(situation, in_force, drawn, block.tolerance, way)
+    rows = _paced(found, block, plan, place, _asked(legs, plan, start))
     warn_of_posture_left(situation, drawn, rows.q[-1], block, place)
     touched = len(plan.ends)
     handed: list[MotionRows | None] = [rows]
     if touched > 1:
         handed = handed_out(rows, moves[:touched], plan.ends)
-    return Motion(tuple(handed), in_force, rest, plan.rooms, _programmed(block, plan))
+    programmed = _programmed(block, plan)
+    return Motion(tuple(handed), in_force, rest, plan.rooms, programmed, plan.path.end_rotation)
 
 
 def _programmed(block: MoveBlock, plan: PlannedChain) -> Pose | None:
@@ -108,8 +115,22 @@ def _programmed(block: MoveBlock, plan: PlannedChain) -> Pose | None:
     return None if block.tolerance is None else (plan.path.end_rotation, plan.path.end_position)
 
 
-def _paced(found: Widened, block: MoveBlock, plan: PlannedChain, place: Place) -> MotionRows:
-    """Rows of the motion of a plan."""
+def _asked(legs: Sequence[Leg], plan: PlannedChain, start: Pose) -> list[AskedPose]:
+    """The poses that a motion from a pose of the tool is led to."""
+    found = list[AskedPose]()
+    for leg in legs[: plan.legs]:
+        start = end_of_move(leg.block, start, leg.place)
+        found += asked_poses(leg.block, start, leg.place)
+    if plan.points:
+        leg = legs[plan.legs]
+        found += asked_poses(leg.block, start, leg.place, plan.points)
+    return found
+
+
+def _paced(
+    found: Widened, block: MoveBlock, plan: PlannedChain, place: Place, asked: Sequence[AskedPose]
+) -> MotionRows:
+    """Rows of the motion of a plan, which is led to the poses `asked`."""
     situation, in_force = found.situation, found.in_force
     model = situation.model(in_force)
     term = term_of(situation, block, plan, model, found.asked, in_force.limits)
@@ -117,8 +138,11 @@ def _paced(found: Widened, block: MoveBlock, plan: PlannedChain, place: Place) -
     if isinstance(paced, Failure):
         told, clear = in_force.told, situation.clearance
         around = Surroundings(situation.kinematics, in_force.limits, situation.free, told, clear, situation.q)
-        goal = goal_shortfall(around, plan.path.end_rotation, plan.path.end_position, situation.q)
+        goal = goal_shortfall(
+            around, plan.path.end_rotation, plan.path.end_position, situation.q, bool(asked)
+        )
         raise PacingError(explain_failure(paced, around, plan, situation.tick + 1, goal, place))
+    check_on_path(asked, paced.q, paced.demands, (situation.kinematics, in_force.limits, situation.free))
     check_implied(paced.q, situation.kinematics, place)
     return narrowed(_rows(situation, block, plan, paced), found.freed)
 
@@ -202,7 +226,7 @@ def _tool(situation: Situation, paced: PacedPath) -> tuple[Array, Array, Array, 
         poses = _wanted(paced.demands) if in_world else kinematics.world.tool_poses(paced.q)
         return nothing, nothing, poses[1], poses[0]
     rotation, position = kinematics.tool_poses(paced.q)
-    distance, angle = pose_errors(kinematics.task, _wanted(paced.demands), (rotation, position))
+    distance, angle = kinematics.errors(paced.q, _wanted(paced.demands))
     if not in_world:
         rotation, position = kinematics.world.tool_poses(paced.q)
     return distance, angle, position, rotation

@@ -10,6 +10,7 @@ from irlx.blocks import JointTarget, PoseTarget
 from irlx.diagnostics import Place, report
 from irlx.pacing.conditions import check_can_move
 from irlx.pacing.errors import PacingError
+from irlx.pacing.left_out import AskedPose, check_followed
 from irlx.pacing.options import LimitsInForce
 from irlx.pacing.posture_left import beyond_limits
 from irlx.pacing.reconfigure import settled_konf
@@ -38,7 +39,7 @@ def posture_of_pose(
 ) -> Array:
     """The posture of a pose nearest to `near` (n,), else to CYCLICSTART's, else to the present one.
 
-    Raises PacingError: IRL522 where there is none.
+    Raises PacingError: IRL522 where there is none, IRL437 where none meets all of the pose.
     """
     q, kinematics = situation.q, situation.kinematics
     check_can_move(target, kinematics, q, place)
@@ -53,12 +54,16 @@ def posture_of_pose(
     drawn_to = next(posture for posture in (near, cyclic, q) if posture is not None)
     start = np.where(situation.free, drawn_to, q)
     weights, free = situation.setup.weights, situation.free
-    asked = kinematics, situation.qp, rotation, position, start, weights, in_force.limits, free
+    # Who gives no orientation keeps what the joints can keep of it.
+    whole = target.orientation is not None
+    asked = kinematics, situation.qp, rotation, position, start, weights, in_force.limits, free, whole
     if situation.setup.resolution.is_coarse:
         found = posture_near(*asked)
         if found is not None:
             return found
     search = nearest_posture(*asked)
+    if search.q is None and search.misses is not None:
+        check_followed(search.misses, AskedPose(rotation, position, place), kinematics)
     if search.q is None:
         distance, angle = search.nearest.distance * 1000.0, np.degrees(search.nearest.angle)
         raise PacingError(report("IRL522", place, distance=f"{distance:.6g}", angle=f"{angle:.4g}"))

@@ -7,7 +7,6 @@ from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from irlx.blocks import ReconfigureBlock
 from irlx.diagnostics import Place, report
@@ -152,8 +151,8 @@ def _motion_rows(
     touched = touching(q, rows, model.limits, dt * ticks / len(rows))
     start_rotation, start_position = kinematics.tool_pose(q)
     rotation, position = kinematics.tool_poses(held)
-    off = np.linalg.norm(position - start_position, axis=1)
-    turned = Rotation.from_matrix(start_rotation.T @ rotation).magnitude()
+    wanted = np.tile(start_rotation, (len(held), 1, 1)), np.tile(start_position, (len(held), 1))
+    distance, angle = kinematics.errors(held, wanted)
     if kinematics.world is not kinematics:
         rotation, position = kinematics.world.tool_poses(held)
     return MotionRows(
@@ -162,8 +161,8 @@ def _motion_rows(
         held,
         position,
         rotation,
-        off,
-        turned,
+        distance,
+        angle,
         np.vstack([touched, np.zeros_like(touched[:1])]),
         np.append(way, way[-1]),
         float(way[-1]),

@@ -28,9 +28,10 @@ def refitted(setup: PacingSetup, block: ToolBlock | WeightsBlock, place: Place) 
 
 
 def _check_task(before: Kinematics, after: Kinematics, place: Place) -> None:
-    """What a task leaves out because no joint moves it must stay so in the new tool frame."""
+    """What a task leaves out must in the new tool frame still be unmoved, or follow from what it asks for."""
     kept = after.immovable.coordinates
     lost = [name for name in before.immovable.coordinates if name not in kept]
-    if lost:
+    lost += [name for name in after.unbound.coordinates if name not in lost]
+    if lost or after.task_rank < before.task_rank:
         robot, task = before.description.name, ", ".join(before.task.coordinates)
         raise PacingError(report("IRL571", place, robot=robot, task=task, lost=", ".join(lost)))

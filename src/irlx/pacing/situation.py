@@ -62,6 +62,9 @@ class Situation:
     `warnings` and `notes` collect what is found on the way, also before an error; `clearance` is what is kept
     clear. `programmed`: where the path of a move WITH TOLERANCE ended, rotation (3, 3) and position (3,) m,
     while the tool stands off it; `freed`: the robot where virtual joints stand among its own.
+    `asked` (3, 3) is the orientation that was asked for last, None where that is the tool's own: a
+    robot whose task leaves turns to the joints goes on from it, or what it makes of them would add up.
+    `looked_at` are ids of moves along a PATH whose points have been looked at.
     """
 
     setup: PacingSetup
@@ -76,6 +79,8 @@ class Situation:
     clearance: Clearance | None = None
     programmed: tuple[Array, Array] | None = None
     programmed_in: LinkFrame | None = None
+    asked: Array | None = None
+    looked_at: set[int] = field(default_factory=set)
     freed: Freed | None = None
 
     @property
@@ -100,8 +105,10 @@ class Situation:
 
     @property
     def pose(self) -> tuple[Array, Array]:
-        """Rotation (3, 3) and position (3,) m of the tool in the world, or in the frame of the situation."""
-        return self.kinematics.tool_pose(self.q)
+        """Rotation (3, 3), or that asked for, and position (3,) m of the tool in the world, or in
+        the frame of the situation."""
+        rotation, position = self.kinematics.tool_pose(self.q)
+        return (rotation if self.asked is None else self.asked), position
 
     def in_frame(self, frame: LinkFrame | None, place: Place) -> Situation:
         """The same for motions to poses, which are told in a frame that moves with a link or in the world.

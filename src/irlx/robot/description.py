@@ -27,12 +27,24 @@ class JointKind(str, Enum):
 
 
 @dataclass(frozen=True)
+class Mimic:
+    """What a joint follows: its value is `multiplier` times that of the joint `leader`, plus `offset`.
+
+    Values in rad or m, each joint in its own unit.
+    """
+
+    leader: str
+    multiplier: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass(frozen=True)
 class Joint:
     """One joint of the frame tree.
 
     `xyz` (m) and `rpy` (rad, fixed axes x, y, z) place the joint frame in the parent link's frame;
     `axis` is a unit vector in the joint frame; `lower`, `upper` in rad or m; `speed` in rad/s or
-    m/s. Limits that are not known are infinite.
+    m/s. Limits that are not known are infinite. A joint with a `mimic` has no drive of its own.
     """
 
     name: str
@@ -45,6 +57,7 @@ class Joint:
     lower: float = -inf
     upper: float = inf
     speed: float = inf
+    mimic: Mimic | None = None
 
     @property
     def is_prismatic(self) -> bool:
@@ -69,12 +82,16 @@ class Inertial:
 class RobotDescription:
     """A robot as a tree of links and joints, with the tool frame `tip` that moves address.
 
-    `joints` holds all joints of the tree; those that move and are not `locked` are the robot's axes where
-    they lie between `root` and `tip`, or between `root` and one of the `carriers`: links that carry
-    something of their own, as another hand does. Axes come depth first, branches in the order of `joints`;
-    along a plain chain that is the order from the root. `locked` maps a joint name to the value
+    `joints` holds all joints of the tree; those that move, are not `locked` and follow no other joint are the
+    robot's axes where they lie between `root` and `tip`, or between `root` and one of the `carriers`: links
+    that carry something of their own, as another hand does. Axes come depth first, branches in the order of
+    `joints`; along a plain chain that is the order from the root. `locked` maps a joint name to the value
     it is held at; moving joints that are no axes are held at their locked value or zero. `solids` are the
     shapes of each link that others must not touch, in the link's frame.
+
+    `coordinates` of the tool pose are those of the robot's task: along and about the axes of the tool frame,
+    or those of the link `task_frame` (a link of the chain), whose origin does not matter. Of the others those
+    in `free` are nobody's business; the rest cannot be moved or follows from the task's own.
     """
 
     name: str
@@ -85,6 +102,8 @@ class RobotDescription:
     locked: Mapping[str, float] = field(default_factory=dict)
     coordinates: tuple[str, ...] = COORDINATES
     solids: Mapping[str, tuple[Solid, ...]] = field(default_factory=dict)
+    task_frame: str | None = None
+    free: tuple[str, ...] = ()
     carriers: tuple[str, ...] = ()
 
     @cached_property
@@ -118,9 +137,29 @@ class RobotDescription:
         return tuple(found)
 
     @cached_property
+    def moving(self) -> tuple[Joint, ...]:
+        """The joints of the chains that move: the axes, and those that follow them."""
+        return tuple(j for j in self.chains if j.kind is not JointKind.FIXED and j.name not in self.locked)
+
+    @cached_property
     def axes(self) -> tuple[Joint, ...]:
         """The joints that programs move, in the order of MAIN_JOINT's fields."""
-        return tuple(j for j in self.chains if j.kind is not JointKind.FIXED and j.name not in self.locked)
+        return tuple(joint for joint in self.moving if joint.mimic is None)
+
+    @cached_property
+    def coupling(self) -> tuple[tuple[int, float, float], ...]:
+        """Of each moving joint the number of the axis that moves it, multiplier and offset of its value."""
+        numbers = {joint.name: number for number, joint in enumerate(self.axes)}
+        by_name = {joint.name: joint for joint in self.moving}
+        found = []
+        for joint in self.moving:
+            leader, multiplier, offset = joint, 1.0, 0.0
+            while leader.mimic is not None:
+                offset += multiplier * leader.mimic.offset
+                multiplier *= leader.mimic.multiplier
+                leader = by_name[leader.mimic.leader]
+            found.append((numbers[leader.name], multiplier, offset))
+        return tuple(found)
 
     @property
     def joint_names(self) -> tuple[str, ...]:
@@ -156,9 +195,12 @@ class RobotDescription:
         chain = self.chain_to(link)
         start = chain.index(first)
         total: float = sum(sum(c * c for c in joint.xyz) ** 0.5 for joint in chain[start + 1 :])
-        for joint in chain[start:]:
-            if joint.is_prismatic and joint in self.axes:
-                stroke = max(abs(joint.lower), abs(joint.upper))
+        counted = chain[start:]
+        for joint, (axis, multiplier, offset) in zip(self.moving, self.coupling, strict=True):
+            if joint.is_prismatic and joint in counted:
+                leader = self.axes[axis]
+                ends = (leader.lower, leader.upper) if multiplier else (0.0,)
+                stroke = max(abs(multiplier * end + offset) for end in ends)
                 total += stroke if stroke != inf else 0.0
         return total
 
@@ -169,9 +211,16 @@ class RobotDescription:
             {**asdict(joint), "lower": None, "upper": None, "speed": None, "kind": joint.kind.value}
             for joint in self.chains
         ]
+        for joint in chain:
+            if joint["mimic"] is None:
+                del joint["mimic"]
         locked = {joint.name: self.locked[joint.name] for joint in self.chains if joint.name in self.locked}
         told: dict[str, object] = {"tip": self.tip, "chain": chain, "locked": locked}
         if self.coordinates != COORDINATES:
             told["task"] = self.coordinates
+        if self.task_frame is not None:
+            told["task_frame"] = self.task_frame
+        if self.free:
+            told["free"] = self.free
         text = json.dumps(told, sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()

@@ -15,12 +15,13 @@ from irlx.blocks.link_frame import LinkFrame
 from irlx.robot.description import COORDINATES, Inertial, Joint, JointKind, RobotDescription
 from irlx.robot.equality import Constraint
 from irlx.robot.implied import implied_by_pose
-from irlx.robot.task import Task, partial_difference
+from irlx.robot.task import Task, framed_difference, partial_difference, pose_errors
 
 Array = NDArray[np.float64]
 
 _POSTURES = 4
 _STILL = 1e-9
+_ROUNDING = 1e-10
 _LOCAL = pin.ReferenceFrame.LOCAL
 _ALIGNED = {
     (JointKind.REVOLUTE, (1.0, 0.0, 0.0)): pin.JointModelRX,
@@ -66,6 +67,18 @@ def _inertia(inertial: Inertial) -> pin.Inertia:
     return placement(inertial.xyz, inertial.rpy).act(about_centre)
 
 
+def _coupling(description: RobotDescription) -> tuple[Array | None, Array]:
+    """A (N, n) and b (N,) of q_all = A q + b for N moving joints; None for A where none follows another."""
+    coupling = description.coupling
+    offsets = np.array([offset for _, _, offset in coupling])
+    if len(coupling) == len(description.axes):
+        return None, offsets
+    matrix = np.zeros((len(coupling), len(description.axes)))
+    for joint, (axis, multiplier, _) in enumerate(coupling):
+        matrix[joint, axis] = multiplier
+    return matrix, offsets
+
+
 class Sizes(NamedTuple):
     """What is left of a demand: a distance (m), an angle (rad), and the largest broken condition."""
 
@@ -83,6 +96,10 @@ class Kinematics:
     (linear m, angular rad) in the tool frame. What a tick has to meet are m rows: the coordinates of the
     robot's task, then those of the constraints. Not safe for use by several threads at once: results
     of one call are kept in buffers of the object.
+
+    Pinocchio's `model` has a joint for each of `RobotDescription.moving`, N in all: those that follow others
+    are among them. Its configuration is `expanded(q)` = A q + b, and what it gives by joints, (.., N), is by
+    axes `by_axes` of it.
     """
 
     def __init__(
@@ -100,7 +117,7 @@ class Kinematics:
         self.task = Task(description.coordinates)
         self.model = pin.Model()
         self.model.name = description.name
-        self._axis_names = set(description.joint_names)
+        self._moving_names = {joint.name for joint in description.moving}
         self._children: dict[str, list[Joint]] = {}
         for joint in description.joints:
             self._children.setdefault(joint.parent, []).append(joint)
@@ -110,6 +127,8 @@ class Kinematics:
         self._add_link(description.root, 0, pin.SE3.Identity())
         self.data = self.model.createData()
         self.joints = len(description.axes)
+        self.coupling, self._offsets = _coupling(description)
+        self._frame = self._task_frame()
         self._plain = self.task.is_whole and not self.constraints
         conditions = sum(len(item.residual(np.zeros(self.joints))) for item in self.constraints)
         self.rows = self.task.size + conditions
@@ -178,12 +197,27 @@ class Kinematics:
             self._tip_frame = self.model.addFrame(frame)
         for joint in self._children.get(link, []):
             origin = in_parent * placement(joint.xyz, joint.rpy)
-            if joint.name in self._axis_names:
+            if joint.name in self._moving_names:
                 index = self.model.addJoint(parent, _joint_model(joint), origin, joint.name)
                 self._add_link(joint.child, index, pin.SE3.Identity())
             else:
                 held_at = self.description.locked.get(joint.name, 0.0)
                 self._add_link(joint.child, parent, origin * _displacement(joint, held_at))
+
+    def _task_frame(self) -> tuple[int, Array] | None:
+        """Pinocchio joint that carries the frame of the task, and its rotation there; None for the tool's."""
+        if self.description.task_frame is None:
+            return None
+        joint, within = self._bodies[self.description.task_frame]
+        return joint, within.rotation
+
+    def expanded(self, q: Array) -> Array:
+        """Values (.., N) of all joints of `model` at joint vectors (.., n): A q + b."""
+        return q if self.coupling is None else q @ self.coupling.T + self._offsets
+
+    def by_axes(self, by_joints: Array) -> Array:
+        """Derivatives by the axes (.., n) from those by all joints of `model` (.., N)."""
+        return by_joints if self.coupling is None else np.asarray(by_joints @ self.coupling)
 
     def body_of(self, link: str) -> tuple[int, pin.SE3]:
         """Pinocchio joint that carries a link, 0 for the world, and the link's frame in that joint's."""
@@ -191,7 +225,7 @@ class Kinematics:
 
     def tool_pose(self, q: Array) -> tuple[Array, Array]:
         """Rotation (3, 3) and position (3,) m of the tool frame in the world."""
-        pin.forwardKinematics(self.model, self.data, q)
+        pin.forwardKinematics(self.model, self.data, self.expanded(q))
         pose = pin.updateFramePlacement(self.model, self.data, self._tip_frame)
         return pose.rotation.copy(), pose.translation.copy()
 
@@ -199,7 +233,7 @@ class Kinematics:
         """Rotations (N, 3, 3) and positions (N, 3) m of the tool frame at the postures q (N, n)."""
         rotation, position = np.empty((len(q), 3, 3)), np.empty((len(q), 3))
         model, data, tip = self.model, self.data, self._tip_frame
-        for k, row in enumerate(q):
+        for k, row in enumerate(self.expanded(q)):
             pin.forwardKinematics(model, data, row)
             pose = pin.updateFramePlacement(model, data, tip)
             rotation[k], position[k] = pose.rotation, pose.translation
@@ -223,9 +257,17 @@ class Kinematics:
 
     def _pose_and_jacobian(self, q: Array) -> tuple[pin.SE3, Array]:
         """Pose of the tool, in a buffer, and its Jacobian (6, n) in the tool frame."""
+        if self.coupling is not None:
+            q = self.expanded(q)
         pin.computeJointJacobians(self.model, self.data, q)
         pose = pin.updateFramePlacement(self.model, self.data, self._tip_frame)
-        return pose, pin.getFrameJacobian(self.model, self.data, self._tip_frame, _LOCAL)
+        jacobian = pin.getFrameJacobian(self.model, self.data, self._tip_frame, _LOCAL)
+        return pose, jacobian if self.coupling is None else jacobian.dot(self.coupling)
+
+    def tool_motions(self, q: Array) -> Array:
+        """Tool Jacobian in the tool frame by all N joints of `model`, (6, N), each of them moving alone."""
+        pin.computeJointJacobians(self.model, self.data, self.expanded(q))
+        return np.array(pin.getFrameJacobian(self.model, self.data, self._tip_frame, _LOCAL))
 
     def difference_derivative(self, q: Array, target: pin.SE3) -> tuple[Array, Array]:
         """What `difference` gives first and its exact derivative by q, (m, n), also far from the target.
@@ -238,7 +280,7 @@ class Kinematics:
     def _rows(self, q: Array, target: pin.SE3, exact: bool) -> tuple[Array, Array]:
         pose, matrix = self._pose_and_jacobian(q)
         if not self.task.is_whole:
-            left, matrix = partial_difference(self.task, pose, matrix, target)
+            left, matrix = self._part(self.task, pose, matrix, target)
         else:
             apart = pose.actInv(target)
             left = pin.log6(apart).vector
@@ -249,6 +291,47 @@ class Kinematics:
         rows = [item.rows(q) for item in self.constraints]
         residuals, derivatives = zip(*rows, strict=True)
         return np.concatenate([left, *(-one for one in residuals)]), np.concatenate([matrix, *derivatives])
+
+    def _part(self, task: Task, pose: pin.SE3, jacobian: Array, target: pin.SE3) -> tuple[Array, Array]:
+        """Coordinates of a task and their matrix, at the posture of the last call of `tool_difference`."""
+        if self._frame is None:
+            return partial_difference(task, pose, jacobian, target)
+        joint, within = self._frame
+        frame = self.data.oMi[joint].rotation @ within
+        return framed_difference(task, frame, pose, jacobian, self._turns_of_frame(frame), target)
+
+    def _turns_of_frame(self, frame: Array) -> Array:
+        """Angular velocity (3, n) of the task's frame, in its own axes, by the joints."""
+        assert self._frame is not None
+        # Joints of other branches do not turn it.
+        carry = [joint - 1 for joint in self.model.supports[self._frame[0]] if joint > 0]
+        turns = np.zeros((3, self.model.nv))
+        turns[:, carry] = self.data.J[3:, carry]
+        return self.by_axes(frame.T @ turns)
+
+    def task_frames(self, q: Array) -> Array:
+        """Rotations (N, 3, 3) in the world of the frame in which the task's coordinates are, at q (N, n)."""
+        if self._frame is None:
+            return self.tool_poses(q)[0]
+        joint, within = self._frame
+        found = np.empty((len(q), 3, 3))
+        for k, row in enumerate(self.expanded(q)):
+            pin.forwardKinematics(self.model, self.data, row)
+            found[k] = self.data.oMi[joint].rotation @ within
+        return found
+
+    def errors(self, q: Array, wanted: tuple[Array, Array]) -> tuple[Array, Array]:
+        """Distance (N,) m and angle (N,) rad between the poses of postures q (N, n) and those wanted.
+
+        Wanted are rotations (N, 3, 3) and positions (N, 3); what counts are the coordinates of the task.
+        """
+        frames = None if self.task.is_whole or self._frame is None else self.task_frames(q)
+        return pose_errors(self.task, wanted, self.tool_poses(q), frames)
+
+    def left_of(self, task: Task, q: Array, target: pin.SE3) -> Array:
+        """What is left from posture q to a target in the coordinates of some task, in the task's frame."""
+        pose, jacobian = self._pose_and_jacobian(q)
+        return self._part(task, pose, jacobian, target)[0]
 
     def sizes(self, left: Array) -> Sizes:
         """What is left (m,), as `difference` gives it first, in three numbers."""
@@ -267,16 +350,66 @@ class Kinematics:
         return (*self.task.coordinates, *names)
 
     @cached_property
-    def immovable(self) -> Task:
-        """Coordinates that the task leaves out and no joint moves either, as a planar arm's height."""
-        moved = np.zeros(6)
+    def _usual_motions(self) -> Array:
+        """Matrices (P, 6, n) by which joints move the tool in the frame of the task, displacements divided by
+        the reach, at postures with nothing special about them."""
+        found = []
         for k in range(_POSTURES):
             # Joint values without any pattern: what is zero at all of them is so everywhere.
             q = np.sin(np.arange(1.0, self.joints + 1.0) * (1.7 + k))
-            jacobian = self.tool_difference(q, pin.SE3.Identity())[1]
-            moved = np.maximum(moved, np.max(np.abs(jacobian), axis=1, initial=0.0))
+            target = self.target(*self.tool_pose(q))
+            pose, jacobian = self._pose_and_jacobian(q)
+            found.append(self._part(Task(), pose, jacobian, target)[1])
+        units = np.array([self.description.reach] * 3 + [1.0] * 3)
+        return np.asarray(found / units[:, None])
+
+    @cached_property
+    def immovable(self) -> Task:
+        """Coordinates that the task leaves out and no joint moves either, as a planar arm's height."""
+        if self.task.is_whole:
+            return Task(())
+        moved = np.max(np.abs(self._usual_motions), axis=(0, 2), initial=0.0)
+        # Lengths count as they are here, and not in reaches.
+        moved[:3] *= self.description.reach
         still = moved <= _STILL * max(1.0, self.description.reach)
-        return Task(tuple(name for name in self.task.left_out if still[COORDINATES.index(name)]))
+        names = (name for name in self.task.left_out if name not in self.description.free)
+        return Task(tuple(name for name in names if still[COORDINATES.index(name)]))
+
+    @cached_property
+    def following(self) -> Task:
+        """Coordinates that the task leaves out, that joints move, and that are not free: where `unbound` is
+        empty they follow from the others."""
+        free, still = self.description.free, self.immovable.coordinates
+        return Task(tuple(name for name in self.task.left_out if name not in free and name not in still))
+
+    @cached_property
+    def leaves_turns(self) -> bool:
+        """Whether joints turn the tool in ways that nobody asks for: a pose met is not the pose asked for."""
+        return bool(self.description.free) or self.following.size > 0
+
+    @cached_property
+    def unbound(self) -> Task:
+        """Those of `following` that joints move whatever the others are."""
+        own = list(self.task.rows)
+        rank = self._usual_rank(own)
+        loose = (self._usual_rank([*own, row]) > rank for row in self.following.rows)
+        return Task(
+            tuple(name for name, moves in zip(self.following.coordinates, loose, strict=True) if moves)
+        )
+
+    @cached_property
+    def task_rank(self) -> int:
+        """How many coordinates of the task joints move independently at nearly all postures."""
+        return self._usual_rank(list(self.task.rows))
+
+    def _usual_rank(self, rows: list[int]) -> int:
+        ranks = []
+        for motions in self._usual_motions:
+            values = np.linalg.svd(motions[rows], compute_uv=False)
+            ranks.append(
+                int(np.count_nonzero(values > _ROUNDING * max(1.0, values[0]))) if values.size else 0
+            )
+        return max(ranks)
 
     def rows_here(self, q: Array) -> Array:
         """The matrix (m, n) of `here`."""

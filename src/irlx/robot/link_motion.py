@@ -48,6 +48,11 @@ class LinkMotion:
         self._at_joint = bool(self._in_joint.isIdentity(0.0))
         self._still = np.zeros((6, kinematics.joints))
 
+    def pose(self, q: Array) -> pin.SE3:
+        """The link's pose in the root frame at posture q (n,)."""
+        pin.forwardKinematics(self._model, self._data, q)
+        return self._data.oMi[self._joint] * self._in_joint
+
     def at(self, q: Array) -> LinkState:
         """The link's state at posture q (n,)."""
         if self._joint == 0:

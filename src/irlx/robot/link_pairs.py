@@ -14,7 +14,7 @@ def pairs_that_could_meet(robot: RobotDescription) -> tuple[tuple[str, str], ...
     always touch. Both orders of the tree: pairs and the links in them go from the root outwards.
     """
     origin = {joint.child: joint for joint in robot.joints}
-    axes = set(robot.joint_names)
+    axes = {joint.name for joint in robot.moving}
     links = [link for link in _outwards(robot) if robot.solids.get(link)]
     found = []
     for first, second in combinations(links, 2):

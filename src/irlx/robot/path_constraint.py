@@ -44,6 +44,16 @@ class PathConstraint(LinkConstraint):
         self._link = LinkMotion(kinematics, relation.link)
         self._heading = relation.heading
 
+    def residual(self, q: Array) -> Array:
+        """What is left at posture q (n,), m and rad, shape (1,) or (2,)."""
+        pose = self._link.pose(q)
+        x, y, _ = pose.translation.tolist()
+        at = self._curve.nearest(x, y)
+        if not self._heading:
+            return np.array([at.offset])
+        ax, ay, _ = pose.rotation[:, 0].tolist()
+        return np.array([at.offset, _angle(ax, ay, at)])
+
     def rows(self, q: Array) -> tuple[Array, Array]:
         """What is left at posture q (n,), shape (1,) or (2,), and its derivative by q."""
         state = self._link.at(q)

@@ -18,6 +18,7 @@ SPACING = 0.01
 _LEAST_SAMPLES = 16
 _MOST_STEPS = 50
 _FLAT = 1e-12
+_SHORT = 1e-9
 _ROUNDING = 1e-14
 
 
@@ -118,10 +119,12 @@ class PlaneCurve:
             low, high = (u, high) if ahead > 0.0 else (low, u)
             step = ahead / rate if rate > 0.0 else inf
             new = u + step
-            if not low <= new <= high:
+            newton = low <= new <= high
+            if not newton:
                 new = 0.5 * (low + high)
             moved, u = abs(new - u), new
-            if moved <= self._rounding:
+            # A short step of Newton's method leaves its square.
+            if moved <= (_SHORT if newton else self._rounding):
                 break
         return u % length if self._closed else u
 

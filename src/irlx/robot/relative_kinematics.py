@@ -73,7 +73,7 @@ class RelativeKinematics(Kinematics):
 
     def tool_pose(self, q: Array) -> tuple[Array, Array]:
         """Rotation (3, 3) and position (3,) m of the tool frame in the frame F."""
-        pin.forwardKinematics(self.model, self.data, q)
+        pin.forwardKinematics(self.model, self.data, self.expanded(q))
         pose = self._seen()
         return pose.rotation, pose.translation
 
@@ -90,8 +90,16 @@ class RelativeKinematics(Kinematics):
         return pin.updateFramePlacement(self.model, self.data, self._seen_by).actInv(tool)
 
     def _pose_and_jacobian(self, q: Array) -> tuple[pin.SE3, Array]:
-        pin.computeJointJacobians(self.model, self.data, q)
+        pin.computeJointJacobians(self.model, self.data, self.expanded(q))
         pose = self._seen()
+        return pose, self.by_axes(self._motions(pose))
+
+    def tool_motions(self, q: Array) -> Array:
+        """Jacobian of T in the tool frame by all N joints of `model`, (6, N), each of them moving alone."""
+        pin.computeJointJacobians(self.model, self.data, self.expanded(q))
+        return self._motions(self._seen())
+
+    def _motions(self, pose: pin.SE3) -> Array:
         of_tool = pin.getFrameJacobian(self.model, self.data, self._tip_frame, _LOCAL)
         of_frame = pin.getFrameJacobian(self.model, self.data, self._seen_by, _LOCAL)
-        return pose, of_tool - pose.inverse().action @ of_frame
+        return np.asarray(of_tool - pose.inverse().action @ of_frame)

@@ -67,17 +67,50 @@ def partial_difference(task: Task, pose: pin.SE3, jacobian: Array, target: pin.S
     return left[rows], np.vstack([moved, turned])[rows]
 
 
-def pose_errors(task: Task, wanted: tuple[Array, Array], reached: tuple[Array, Array]) -> tuple[Array, Array]:
+def framed_difference(
+    task: Task, frame: Array, pose: pin.SE3, jacobian: Array, turns: Array, target: pin.SE3
+) -> tuple[Array, Array]:
+    """`partial_difference` with the coordinates in another frame F, which joints turn.
+
+    `frame` (3, 3) is the rotation of F in the world, `turns` (3, n) its angular velocity in its own axes by
+    the joints; `jacobian` (6, n) still that of the tool in the tool frame. With T = (R, p) and the target
+    (R*, p*) the six are F'(p* - p) and l = log3(F' R* R' F), the turn that leads from the tool to the target,
+    seen from F. A step of tool twist (v, w) and frame turn f, all in F, changes them by -(v + f x p) and
+    -(Jlog3(l) w + f x l). Where F is the tool frame these are those of `partial_difference`.
+    """
+    p = frame.T @ (target.translation - pose.translation)
+    apart = frame.T @ target.rotation @ pose.rotation.T @ frame
+    turn = pin.log3(apart)
+    left = np.concatenate([p, turn])
+    seen = frame.T @ pose.rotation
+    # f x p = -[p]x f.
+    moved = seen @ jacobian[:3] - pin.skew(p) @ turns
+    turned = pin.Jlog3(apart) @ seen @ jacobian[3:] - pin.skew(turn) @ turns
+    rows = list(task.rows)
+    return left[rows], np.vstack([moved, turned])[rows]
+
+
+def pose_errors(
+    task: Task,
+    wanted: tuple[Array, Array],
+    reached: tuple[Array, Array],
+    frames: Array | None = None,
+) -> tuple[Array, Array]:
     """Distance (N,) m and angle (N,) rad between poses, in the coordinates that count.
 
-    Poses are stacks of rotations (N, 3, 3) and positions (N, 3).
+    Poses are stacks of rotations (N, 3, 3) and positions (N, 3); `frames` (N, 3, 3) are the rotations of the
+    frames that the coordinates are in, those reached where they are the tool's own.
     """
     from scipy.spatial.transform import Rotation
 
     turn = Rotation.from_matrix(np.swapaxes(reached[0], 1, 2) @ wanted[0])
     if task.is_whole:
         return np.linalg.norm(wanted[1] - reached[1], axis=1), turn.magnitude()
-    away = np.einsum("nji,nj->ni", reached[0], wanted[1] - reached[1])
+    seen = reached[0] if frames is None else frames
+    away = np.einsum("nji,nj->ni", seen, wanted[1] - reached[1])
+    vectors = turn.as_rotvec()
+    if frames is not None:
+        vectors = np.einsum("nji,njk,nk->ni", frames, reached[0], vectors)
     rows = np.array(task.rows)
-    angles = turn.as_rotvec()[:, rows[rows >= 3] - 3]
+    angles = vectors[:, rows[rows >= 3] - 3]
     return np.linalg.norm(away[:, rows[rows < 3]], axis=1), np.linalg.norm(angles, axis=1)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from collections.abc import Collection, Mapping
+from dataclasses import replace
 from math import inf, sqrt
 
-from irlx.robot.description import Inertial, Joint, JointKind, RobotDescription
+from irlx.robot.description import Inertial, Joint, JointKind, Mimic, RobotDescription
 from irlx.robot.link_solids import link_solids
 from irlx.robot.urdf_values import RobotModelError, number_of, origin_of, vector_of
 from irlx.solids.placement import Vector3
@@ -50,8 +51,8 @@ def read_urdf(
     robot = RobotDescription(
         name, root, tip, joints, inertials, locked, solids=solids, carriers=tuple(carriers)
     )
-    _check_axes(robot, root_element)
-    return robot
+    check_followers(robot)
+    return _within_followers(robot)
 
 
 def _robot_element(text: str) -> ET.Element:
@@ -64,12 +65,55 @@ def _robot_element(text: str) -> ET.Element:
     return element
 
 
-def _check_axes(robot: RobotDescription, root_element: ET.Element) -> None:
-    """Joints that follow others are fine where they are held or lie off the chain, not among the axes."""
-    mimicking = {e.get("name", "") for e in root_element.findall("joint") if e.find("mimic") is not None}
-    for name in robot.joint_names:
-        if name in mimicking:
-            raise RobotModelError(f"joint '{name}' moves the tool and mimics another one; lock it", name)
+def check_followers(robot: RobotDescription) -> None:
+    """Raise RobotModelError where a joint that moves the tool follows one that is no axis of the robot.
+
+    Joints that follow others are nobody's business where they are held or lie off the chain.
+    """
+    by_name, moving = {joint.name: joint for joint in robot.joints}, {joint.name for joint in robot.moving}
+    for follower in robot.moving:
+        joint, passed = follower, {follower.name}
+        while joint.mimic is not None:
+            leader = joint.mimic.leader
+            if leader in passed:
+                raise RobotModelError(f"joint '{follower.name}' follows itself", follower.name)
+            if leader not in moving:
+                raise RobotModelError(_no_leader(robot, joint, by_name), joint.name)
+            joint = by_name[leader]
+            passed.add(leader)
+
+
+def _no_leader(robot: RobotDescription, joint: Joint, by_name: Mapping[str, Joint]) -> str:
+    """Why a joint cannot follow the one that it mimics."""
+    assert joint.mimic is not None
+    name = joint.mimic.leader
+    if name not in by_name:
+        why = "which does not exist"
+    elif name in robot.locked:
+        why = "which is locked"
+    elif by_name[name].kind is JointKind.FIXED:
+        why = "which is fixed"
+    else:
+        why = "which does not move the tool"
+    return f"joint '{joint.name}' moves the tool and mimics '{name}', {why}; lock it"
+
+
+def _within_followers(robot: RobotDescription) -> RobotDescription:
+    """The robot with limits of its axes that keep those of the joints that follow them."""
+    narrowed = {joint.name: joint for joint in robot.axes}
+    for joint, (axis, multiplier, offset) in zip(robot.moving, robot.coupling, strict=True):
+        if joint.mimic is None or multiplier == 0.0:
+            continue
+        leader = narrowed[robot.axes[axis].name]
+        ends = sorted((end - offset) / multiplier for end in (joint.lower, joint.upper))
+        lower, upper = max(leader.lower, ends[0]), min(leader.upper, ends[1])
+        if lower > upper:
+            message = f"joint '{joint.name}' follows '{leader.name}', but no value of that keeps both limits"
+            raise RobotModelError(message, joint.name)
+        speed = min(leader.speed, joint.speed / abs(multiplier))
+        narrowed[leader.name] = replace(leader, lower=lower, upper=upper, speed=speed)
+    joints = tuple(narrowed.get(joint.name, joint) for joint in robot.joints)
+    return replace(robot, joints=joints) if joints != robot.joints else robot
 
 
 def _check_tree(links: list[str], joints: tuple[Joint, ...]) -> str:
@@ -131,7 +175,19 @@ def _joint(element: ET.Element) -> Joint:
     parent, child = (_link_of(element, tag, name) for tag in ("parent", "child"))
     xyz, rpy = origin_of(element, f"joint '{name}'")
     lower, upper, speed = _joint_limits(element, name, kind)
-    return Joint(name, kind, parent, child, xyz, rpy, _axis(element, name, kind), lower, upper, speed)
+    axis, mimic = _axis(element, name, kind), _mimic(element, name)
+    return Joint(name, kind, parent, child, xyz, rpy, axis, lower, upper, speed, mimic)
+
+
+def _mimic(element: ET.Element, name: str) -> Mimic | None:
+    found = element.find("mimic")
+    if found is None:
+        return None
+    where, leader = f"joint '{name}', mimic", found.get("joint")
+    if not leader:
+        raise RobotModelError(f"{where}: it names no joint", name)
+    multiplier = number_of(found.get("multiplier", "1"), "multiplier", where)
+    return Mimic(leader, multiplier, number_of(found.get("offset", "0"), "offset", where))
 
 
 def _link_of(element: ET.Element, tag: str, name: str) -> str:

@@ -128,7 +128,7 @@ class Distances:
         self._found = np.empty((len(pairs), 10))
         self._all_near: Near | None = None
         self._columns: Array = self._data.J
-        carries = np.zeros((kinematics.model.njoints, kinematics.joints))
+        carries = np.zeros((kinematics.model.njoints, kinematics.model.nv))
         for joint in range(1, kinematics.model.njoints):
             carries[joint, [above - 1 for above in kinematics.model.supports[joint] if above]] = 1.0
         bodies = np.array(self._bodies, dtype=np.intp)
@@ -362,15 +362,15 @@ class Distances:
     def _point_jacobians(self, carried: Array, points: Array) -> Array:
         """Jacobians (P, 3, n) of points (P, 3) in the world, each on a body; `carried` (P, 1, n) by which."""
         turned = points.dot(_CROSS).reshape(-1, 3)
-        found = turned.dot(self._columns[3:]).reshape(-1, 3, self.kinematics.joints)
+        found = turned.dot(self._columns[3:]).reshape(-1, 3, self._columns.shape[1])
         found += self._columns[:3]
         found *= carried
-        return np.asarray(found)
+        return self.kinematics.by_axes(np.asarray(found))
 
     def _place(self, q: Array) -> None:
         if self._here is not None and _same(q, self._here):
             return
-        pin.computeJointJacobians(self.kinematics.model, self._data, q)
+        pin.computeJointJacobians(self.kinematics.model, self._data, self.kinematics.expanded(q))
         pin.updateGeometryPlacements(self.kinematics.model, self._data, self._model, self._geometry)
         self._columns = self._data.J
         self._here = q.copy()

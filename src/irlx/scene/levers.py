@@ -20,12 +20,12 @@ class Levers:
 
     A joint that turns moves a point by its distance from the axis, at most the length of all that lies
     between: `fixed` with all slides at 0, and what slides are drawn out. A joint that carries both counts
-    nothing. `slides` are pairs of a slide's
-    number (from 0) and the levers (K, n) that a metre of it adds.
+    nothing. `slides` are the values of sliding joints, a (n,) and b of a q + b, and the levers (K, n) that a
+    metre of each adds.
     """
 
     fixed: Array
-    slides: tuple[tuple[int, Array], ...]
+    slides: tuple[tuple[Array, float, Array], ...]
 
     @classmethod
     def of(
@@ -42,7 +42,7 @@ class Levers:
         (m) about its frame.
         """
         lengths = [float(np.linalg.norm(place.translation)) for place in kinematics.model.jointPlacements]
-        axes = kinematics.description.axes
+        axes = kinematics.description.moving
         n = len(axes)
         fixed = np.zeros((len(bodies), n))
         drawn = {k: np.zeros((len(bodies), n)) for k, axis in enumerate(axes) if axis.is_prismatic}
@@ -57,8 +57,17 @@ class Levers:
         # What carries both moves neither against the other.
         index, carriers = np.arange(n), np.array(bodies, dtype=np.intp)
         apart = index >= np.minimum(carriers[first], carriers[second])[:, None]
-        pairs = apart * (fixed[first] + fixed[second])
-        return cls(pairs, tuple((k, apart * (added[first] + added[second])) for k, added in drawn.items()))
+        by_axes = _sizes_by_axes(kinematics)
+        pairs = (apart * (fixed[first] + fixed[second])) @ by_axes
+        values, offsets = (
+            kinematics.expanded(np.eye(kinematics.joints)),
+            kinematics.expanded(np.zeros(kinematics.joints)),
+        )
+        slides = (
+            (values[:, k] - offsets[k], float(offsets[k]), (apart * (added[first] + added[second])) @ by_axes)
+            for k, added in drawn.items()
+        )
+        return cls(pairs, tuple(slides))
 
     @property
     def longest(self) -> Array | None:
@@ -72,7 +81,12 @@ class Levers:
         """
         way = np.abs(after - before)
         bound = way @ self.fixed.T
-        for slide, added in self.slides:
-            farthest = np.maximum(np.abs(before[..., slide, None]), np.abs(after[..., slide, None]))
-            bound = bound + farthest * (way @ added.T)
+        for value, offset, added in self.slides:
+            ends = np.abs(before @ value + offset), np.abs(after @ value + offset)
+            bound = bound + np.maximum(*ends)[..., None] * (way @ added.T)
         return np.asarray(bound)
+
+
+def _sizes_by_axes(kinematics: Kinematics) -> Array:
+    """By how much each moving joint moves at most with each axis, (N, n)."""
+    return np.abs(kinematics.by_axes(np.eye(kinematics.model.nv)))

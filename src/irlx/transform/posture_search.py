@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import pinocchio as pin
 from numpy.typing import NDArray
 
-from irlx.promises import PATH_ORIENTATION, PATH_POSITION
+from irlx.promises import FOLLOWED_TURN, PATH_ORIENTATION, PATH_POSITION
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
 from irlx.transform.criteria.posture import Posture
@@ -33,10 +34,15 @@ _WIDE = 100.0
 
 @dataclass(frozen=True)
 class PostureSearch:
-    """Posture found (n,), or None; and how near any start came to the pose."""
+    """Posture found (n,), or None; how near any start came to the pose.
+
+    `misses` (n,), where there is one: a posture that meets the pose in the coordinates of the task, but not
+    in what follows from them, the one that is off by least.
+    """
 
     q: Array | None
     nearest: Nearest
+    misses: Array | None = None
 
 
 def nearest_approach(
@@ -67,26 +73,40 @@ def nearest_posture(
     weights: Array,
     limits: JointLimits,
     free: NDArray[np.bool_],
+    whole: bool = True,
 ) -> PostureSearch:
     """Posture at a tool pose that lies nearest to q by the weighted norm, among those of all starts.
 
-    Each start is led onto the pose, then along it towards q by the posture criterion.
+    Each start is led onto the pose, then along it towards q by the posture criterion. `whole`: what follows
+    from the task's coordinates (`Kinematics.following`) has to be that of the pose, too, to `FOLLOWED_TURN`.
     """
     solver = TickSolver(kinematics, qp, max_iterations=_ITERATIONS)
     target = kinematics.target(rotation, position)
     criterion = Posture(weights, q)
     approaches = nearest_approach(kinematics, rotation, position, q, limits, free)
     best: Array | None = None
-    least = np.inf
+    misses: Array | None = None
+    least = missed = np.inf
     for approach in approaches:
         if approach.distance > PATH_POSITION or approach.angle > PATH_ORIENTATION:
             continue
         problem = TickProblem(target, approach.q, _position_room(approach.q, limits), criterion, free)
         solution = solver.solve(problem)
         away = float(weights @ (solution.q - q) ** 2)
+        off = _missed(kinematics, solution.q, target) if whole else 0.0
+        if solution.solved and off > FOLLOWED_TURN:
+            if off < missed:
+                misses, missed = limits.into_positions(solution.q), off
+            continue
         if solution.solved and away < least * (1.0 - _ALIKE):
             best, least = limits.into_positions(solution.q), away
-    return PostureSearch(best, closest(approaches, kinematics.description.reach))
+    return PostureSearch(best, closest(approaches, kinematics.description.reach), misses)
+
+
+def _missed(kinematics: Kinematics, q: Array, target: pin.SE3) -> float:
+    """Largest turn by which q is off a target in what follows from the task's coordinates, rad."""
+    following = kinematics.following
+    return float(np.max(np.abs(kinematics.left_of(following, q, target)))) if following.size else 0.0
 
 
 def posture_near(
@@ -98,6 +118,7 @@ def posture_near(
     weights: Array,
     limits: JointLimits,
     free: NDArray[np.bool_],
+    whole: bool = True,
 ) -> Array | None:
     """Posture at a tool pose as near to q (n,) as Newton's steps from there lead, if that is near by.
 
@@ -109,6 +130,8 @@ def posture_near(
     problem = TickProblem(target, q, _position_room(q, limits), Posture(weights, q), free)
     solution = TickSolver(kinematics, qp).solve(problem, thorough=False)
     if not solution.solved or float(np.max(np.abs(solution.q - q))) > NEAR:
+        return None
+    if whole and _missed(kinematics, solution.q, target) > FOLLOWED_TURN:
         return None
     return limits.into_positions(solution.q)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -26,6 +27,7 @@ from irlx.verifier.geometry.allowance import EXACT, Allowance
 from irlx.verifier.geometry.arcs import arc_shape
 from irlx.verifier.geometry.forward import forward
 from irlx.verifier.geometry.rotations import angle_between, from_quaternion
+from irlx.verifier.geometry.task_turns import TaskTurns, turned_off
 from irlx.verifier.moves import MoveRows
 from irlx.verifier.outline import Outline
 from irlx.verifier.tools import Pose, ToolsInForce
@@ -58,6 +60,12 @@ class Demand:
     follows: bool
     crosses: tuple[bool, bool] = (False, False)
 
+    @property
+    def gives_orientation(self) -> bool:
+        """Whether the last target gives an orientation of its own, and does not keep that of the start."""
+        target = self.move.block.target
+        return isinstance(target, JointTarget | JointIncrement) or target.orientation is not None
+
 
 @dataclass(frozen=True, eq=False)
 class Placer:
@@ -69,6 +77,29 @@ class Placer:
     robot: RobotDescription | None
     tools: ToolsInForce
     frames: FramesInForce
+
+    @cached_property
+    def turns(self) -> TaskTurns | None:
+        """Which turns of the tool count, None for all."""
+        return None if self.robot is None else TaskTurns.of(self.robot)
+
+    def attitude(self, rotation: Floats, q: Floats) -> Floats:
+        """Attitude (1, ..) of a tool of a rotation (3, 3) in posture q (n,)."""
+        return self.attitudes(rotation[None], q[None])
+
+    def attitudes(self, rotations: Floats, q: Floats) -> Floats:
+        """Attitudes (N, ..) of tools of rotations (N, 3, 3) in postures q (N, n)."""
+        turns = self.turns
+        return rotations if turns is None else turns.attitudes(rotations, turns.frames(q))
+
+    def going_on(self, stands: Place, before: Demand, block: int) -> Place:
+        """Where a block begins behind a move: where not all turns count with the orientation that was asked
+        for there last, unless the tool is another one since."""
+        asked = before.end.pose
+        same = self.tools.number(block) == self.tools.number(before.move.block.id)
+        if self.turns is None or stands.pose is None or asked is None or not same:
+            return stands
+        return Place((stands.pose[0], asked[1]), stands.posture)
 
     def of_posture(self, q: Floats, block: int) -> Pose | None:
         """Pose of the tool of a block in posture q (n,)."""
@@ -142,6 +173,8 @@ def demands_of(outline: Outline, moves: list[MoveRows], placer: Placer) -> list[
     for move in moves:
         follows = bool(found) and found[-1].passes
         start = found[-1].end if follows else ends.place(move.start, move.block.id)
+        if found and not follows:
+            start = placer.going_on(start, found[-1], move.block.id)
         if found:
             start = _goes_on(found[-1], move, start, placer.tools)
         targets = placer.all_of(move, start)
@@ -188,7 +221,7 @@ class _Ends:
     """Places where blocks end, their poses computed all at once."""
 
     def __init__(self, outline: Outline, placer: Placer) -> None:
-        self._outline, self._placer = outline, placer
+        self._outline, self.placer = outline, placer
         self._tips = None if placer.robot is None else forward(placer.robot, outline.ends)
 
     def place(self, row: int, block: int) -> Place:
@@ -198,7 +231,7 @@ class _Ends:
         if self._tips is None:
             return Place(None, posture)
         tip = self._tips[0][stretch : stretch + 1], self._tips[1][stretch : stretch + 1]
-        return Place(self._placer.of_tip(tip, posture, block), posture)
+        return Place(self.placer.of_tip(tip, posture, block), posture)
 
 
 def _stands(outline: Outline, move: MoveRows, target: Place, ends: _Ends) -> bool:
@@ -212,7 +245,10 @@ def _stands(outline: Outline, move: MoveRows, target: Place, ends: _Ends) -> boo
     if pose is None or target.pose is None:
         return True
     near = float(np.linalg.norm(pose[0] - target.pose[0])) <= PATH_POSITION
-    return near and float(angle_between(pose[1], target.pose[1])) <= PATH_ORIENTATION
+    if reached.posture is None:
+        return near and float(angle_between(pose[1], target.pose[1])) <= PATH_ORIENTATION
+    attitude = ends.placer.attitude(pose[1], reached.posture)
+    return near and float(turned_off(attitude, target.pose[1])[0]) <= PATH_ORIENTATION
 
 
 def _joinable(outline: Outline) -> frozenset[int]:

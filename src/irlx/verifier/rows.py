@@ -16,6 +16,7 @@ from irlx.streams.joint_stream import Floats, Integers
 from irlx.streams.scan import RowBatch, ScanItem, StatedRates
 from irlx.verifier.frames import FramesInForce, frames_of
 from irlx.verifier.geometry.forward import forward
+from irlx.verifier.geometry.task_turns import TaskTurns
 from irlx.verifier.outline import Outline, Scans
 from irlx.verifier.tools import Pose, ToolsInForce, tools_of
 
@@ -57,7 +58,8 @@ class Rows:
     `rotations` (R + 1, 3, 3) begin with the row before; for row 0 that is row 0 itself. Poses are those of
     the verifier's own forward kinematics, and empty where no robot is known: those of the tip in `tips`, of
     the tool in force in each row in `in_world`, and in `positions` and `rotations` as the frame sees it in
-    which the poses of the row's block count, that of a moving link or the world.
+    which the poses of the row's block count, that of a moving link or the world. `turns` tells
+    which turns of it count, None for all.
     """
 
     first: int
@@ -73,6 +75,7 @@ class Rows:
     tools: ToolsInForce
     in_world: Pose
     frames: FramesInForce
+    turns: TaskTurns | None = None
 
     def __len__(self) -> int:
         return len(self.qd)
@@ -113,6 +116,13 @@ class Rows:
         return positions, rotations
 
     @cached_property
+    def attitudes(self) -> Floats:
+        """Attitudes (R + 1, ..) of the tool in force; see `irlx.verifier.geometry.task_turns`."""
+        if self.turns is None:
+            return self.rotations
+        return self.turns.attitudes(self.rotations, self.turns.frames(self.postures))
+
+    @cached_property
     def stretches(self) -> list[Stretch]:
         """The portion's rows by the blocks they belong to, in order."""
         outline, last = self.outline, self.first + len(self) - 1
@@ -136,6 +146,7 @@ def rows_of(scans: Scans, outline: Outline, robot: RobotDescription | None) -> I
     poses: tuple[Floats, Floats] | None = None
     tools, frames = tools_of(outline.records), frames_of(outline.records, robot)
     block = np.zeros(1, dtype=np.int64)
+    turns = None if robot is None else TaskTurns.of(robot)
     for portion in _portions(scans()):
         # A file that grows meanwhile is judged as it was.
         batch = portion.part(slice(0, outline.rows - done))
@@ -157,7 +168,7 @@ def rows_of(scans: Scans, outline: Outline, robot: RobotDescription | None) -> I
         seen = frames.seen(placed, postures, blocks)
         block = blocks[-1:]
         told = batch.tool, batch.rates
-        yield Rows(done, postures, qd, qdd, *told, *seen, outline, tips, tools, placed, frames)
+        yield Rows(done, postures, qd, qdd, *told, *seen, outline, tips, tools, placed, frames, turns)
         earlier = q[-1:], qd[-1:]
         done += len(q)
 

@@ -68,7 +68,10 @@ class Course:
 
 
 def course_of(evidence: Evidence, move: MoveRows, start: Pose) -> Course:
-    """The course of a move that starts at a pose of the tool."""
+    """The course of a move from a pose of the tool; where not all turns count, as that was asked for."""
+    begins = evidence.demands[move.block.id].start.pose
+    if evidence.placer.turns is not None and begins is not None:
+        start = start[0], begins[1]
     places = evidence.placer.all_of(move, Place(start, evidence.posture(move.start)))
     poses = [place.pose for place in places if place.pose is not None]
     target = poses[-1] if poses else None

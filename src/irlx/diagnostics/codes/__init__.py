@@ -16,6 +16,7 @@ from irlx.diagnostics.codes.motion import MOTION
 from irlx.diagnostics.codes.names import NAMES
 from irlx.diagnostics.codes.pacing import PACING
 from irlx.diagnostics.codes.redundancy import REDUNDANCY
+from irlx.diagnostics.codes.robot_model import ROBOT_MODEL
 from irlx.diagnostics.codes.run import RUN
 from irlx.diagnostics.codes.static_types import STATIC_TYPES
 from irlx.diagnostics.codes.stream import STREAM
@@ -40,6 +41,7 @@ CATALOGUE: Mapping[str, Code] = MappingProxyType(
             RUN,
             FILES,
             CELL,
+            ROBOT_MODEL,
             STREAM,
         )
         for code in group

@@ -35,7 +35,7 @@ CELL = (
     error(
         "IRL615",
         "robot.task leaves out {names}, but joints move the tool that way",
-        "name them in robot.task; coordinates that are left free on purpose are for a later version",
+        "name them in robot.task, or turns (rx, ry, rz) that may be as they come in robot.free",
     ),
     error(
         "IRL616",
@@ -66,6 +66,17 @@ CELL = (
         "IRL621",
         "no joint has an acceleration limit, so every change of speed within a tick is allowed",
         "give robot.limits.acceleration in the cell file",
+    ),
+    error(
+        "IRL622",
+        "robot.task_frame: no link between the root and the tip {tip} is called '{name}'{near}",
+        "links of the chain are {known}",
+    ),
+    error(
+        "IRL623",
+        "the task {task} has {rows} coordinates, but the joints move only {rank} of them independently",
+        "leave out of robot.task what follows from the others, or give them in the frame of another link "
+        "(robot.task_frame)",
     ),
     error(
         "IRL624",

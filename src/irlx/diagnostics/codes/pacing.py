@@ -90,7 +90,7 @@ PACING = (
     ),
     error(
         "IRL430",
-        "the target is off where no joint of {robot} moves the tool: {off}, in the tool frame",
+        "the target is off where no joint of {robot} moves the tool: {off}, in {frame}",
         "give the target the values that the tool has there; the robot's task leaves them out",
     ),
     info(
@@ -120,6 +120,11 @@ PACING = (
         "ask for a smaller C_CP or C_PTP to come nearer, for a larger one to be quicker",
     ),
     error(
+        "IRL437",
+        "{robot} has no joint for all of this target: at its end the tool is off it by {off}, in {frame}",
+        "the nearest pose that {robot} can meet is {pose} (mm and deg in the root frame of the robot)",
+    ),
+    error(
         "IRL440",
         "a motion in the frame '{frame}', which moves with a link, cannot be corrected",
         "corrections and obstacles that are seen count in the world: run the program without them",
@@ -128,6 +133,12 @@ PACING = (
         "IRL441",
         "the poses of this move break the constraint '{name}', by {broken} rad or m",
         "what it asks for is told by the pose alone: give the targets an orientation that keeps it",
+    ),
+    error(
+        "IRL442",
+        "poses in the frame '{frame}', which moves with a link, ask for all turns of the tool, but the task "
+        "of {robot} leaves out {left}",
+        "leave robot.task whole, and give the turns that may be free in each move: WITH TOLERANCE",
     ),
     warning(
         "IRL445",

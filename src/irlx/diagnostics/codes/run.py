@@ -128,6 +128,11 @@ RUN = (
         "remove [[constraint]] from the cell, or correct nothing",
     ),
     error(
+        "IRL438",
+        "a sensor cannot correct a robot whose task is told in the frame of a link: {frame}",
+        "leave robot.task_frame out of the cell, or correct nothing",
+    ),
+    error(
         "IRL584",
         "a correction holds {joint} {offset} off its programmed value, which this move has no room for "
         "between {lower} and {upper}; the joint is frozen or may not move",

@@ -6,7 +6,6 @@ from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pinocchio as pin
 from numpy.typing import NDArray
 
 from irlx.robot.kinematics import Kinematics
@@ -100,8 +99,9 @@ class EnergyIncrement(KineticEnergy):
 
     def linear(self, q: Array, elapsed: float) -> Array:
         """Work against gravity."""
-        torque = pin.computeGeneralizedGravity(self._kinematics.model, self._kinematics.data, q)
-        return np.asarray(torque * (elapsed / REFERENCE_TICK))
+        from irlx.transform.measures.gravity_torque import gravity_torque
+
+        return np.asarray(gravity_torque(self._kinematics, q) * (elapsed / REFERENCE_TICK))
 
 
 class VelocityRatio(Term):

@@ -7,9 +7,8 @@ import numpy as np
 from irlx.robot.kinematics import Kinematics
 from irlx.transform.measures.ellipsoid import volume, volume_derivative
 from irlx.transform.measures.inertia import inertia_derivative, inertia_matrix
-from irlx.transform.measures.jacobian_derivative import jacobian_derivative
 from irlx.transform.measures.measure import Array, Measure
-from irlx.transform.measures.scaled_jacobian import of_task, scaled_jacobian
+from irlx.transform.measures.scaled_jacobian import task_jacobian, task_jacobian_derivative
 
 _NO_INERTIA = 1e-14
 """Ratio of the smallest to the largest eigenvalue of the inertia matrix that is rounding alone."""
@@ -36,25 +35,24 @@ class DynamicManipulability(Measure):
             joint = kinematics.description.joint_names[int(np.argmax(np.abs(vectors[:, 0])))]
             raise ValueError(f"the masses of '{kinematics.description.name}' leave '{joint}' without inertia")
 
-    def _response(self, q: Array) -> tuple[Array, Array, Array]:
-        """J, M^-1, and J M^-1 of the rows of the task."""
-        jacobian = scaled_jacobian(self.kinematics, q)
-        mobility = np.asarray(np.linalg.inv(inertia_matrix(self.kinematics, q)), dtype=np.float64)
-        return jacobian, mobility, of_task(self.kinematics, jacobian) @ mobility
+    def _mobility(self, q: Array) -> Array:
+        """M^-1."""
+        return np.asarray(np.linalg.inv(inertia_matrix(self.kinematics, q)), dtype=np.float64)
 
     def value(self, q: Array) -> float:
         """w."""
-        return volume(self._response(q)[2])
+        return volume(task_jacobian(self.kinematics, q) @ self._mobility(q))
 
     def gradient(self, q: Array) -> Array:
         """Derivative of w by q, shape (n,).
 
         dw = <G, dJ M^-1 - J M^-1 dM M^-1>, G the derivative of w by the entries of J M^-1.
         """
-        jacobian, mobility, response = self._response(q)
+        jacobian, moved = task_jacobian_derivative(self.kinematics, q)
+        mobility = self._mobility(q)
+        response = jacobian @ mobility
         by_jacobian = volume_derivative(response) @ mobility
         by_inertia = response.T @ by_jacobian
-        moved = of_task(self.kinematics, jacobian_derivative(jacobian))
         turned = by_jacobian.ravel() @ moved.reshape(by_jacobian.size, -1)
         changed = by_inertia.ravel() @ inertia_derivative(self.kinematics, q).reshape(by_inertia.size, -1)
         return np.asarray(turned - changed)

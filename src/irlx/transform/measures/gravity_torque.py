@@ -9,6 +9,12 @@ from irlx.robot.kinematics import Kinematics
 from irlx.transform.measures.measure import Array, Measure
 
 
+def gravity_torque(kinematics: Kinematics, q: Array) -> Array:
+    """Drive forces (n,), Nm or N, that hold a posture against gravity; a drive also holds what follows it."""
+    model, data = kinematics.model, kinematics.data
+    return kinematics.by_axes(np.asarray(pin.computeGeneralizedGravity(model, data, kinematics.expanded(q))))
+
+
 class GravityTorque(Measure):
     """1/2 tau' W tau, tau (n,) the drive forces (Nm or N) that hold the posture; W = diag(weights).
 
@@ -28,11 +34,14 @@ class GravityTorque(Measure):
 
     def value(self, q: Array) -> float:
         """1/2 tau' W tau."""
-        torque = pin.computeGeneralizedGravity(self.kinematics.model, self.kinematics.data, q)
+        torque = gravity_torque(self.kinematics, q)
         return float(0.5 * (self.weights * torque) @ torque)
 
     def gradient(self, q: Array) -> Array:
         """(d tau / dq)' W tau, shape (n,)."""
-        model, data = self.kinematics.model, self.kinematics.data
-        torque = self.weights * pin.computeGeneralizedGravity(model, data, q)
-        return np.asarray(torque @ pin.computeGeneralizedGravityDerivatives(model, data, q))
+        kinematics = self.kinematics
+        torque = self.weights * gravity_torque(kinematics, q)
+        slope = pin.computeGeneralizedGravityDerivatives(
+            kinematics.model, kinematics.data, kinematics.expanded(q)
+        )
+        return np.asarray(torque @ kinematics.by_axes(kinematics.by_axes(slope.T).T))

@@ -21,7 +21,12 @@ def inertia_matrix(kinematics: Kinematics, q: Array) -> Array:
 
     The kinetic energy at the joint speeds v is 1/2 v' M v, in J.
     """
-    return np.array(pin.crba(kinematics.model, kinematics.data, q))
+    found = np.array(pin.crba(kinematics.model, kinematics.data, kinematics.expanded(q)))
+    return (
+        found
+        if kinematics.coupling is None
+        else np.asarray(kinematics.coupling.T @ found @ kinematics.coupling)
+    )
 
 
 def inertia_derivative(kinematics: Kinematics, q: Array) -> Array:
@@ -32,12 +37,16 @@ def inertia_derivative(kinematics: Kinematics, q: Array) -> Array:
     dM_ik / dq_j = <[S_i, S_j], Y_max(j, k) S_k> for i before j, plus the same with i and k exchanged.
     """
     model, data = kinematics.model, kinematics.data
-    pin.crba(model, data, q, pin.Convention.WORLD)
+    pin.crba(model, data, kinematics.expanded(q), pin.Convention.WORLD)
     axes = np.array(data.J)
     inertias = np.array([inertia.matrix() for inertia in data.oYcrb.tolist()[1:]])
     momenta = inertias @ axes
     own = np.einsum("kck->ck", momenta)
-    joints = np.arange(q.size)
+    joints = np.arange(model.nv)
     momenta = np.where(joints[:, None, None] < joints, own, momenta)
     half = jacobian_derivative(axes).transpose(2, 1, 0) @ momenta
-    return np.asarray((half + half.transpose(0, 2, 1)).transpose(1, 2, 0))
+    found = (half + half.transpose(0, 2, 1)).transpose(1, 2, 0)
+    if kinematics.coupling is not None:
+        a = kinematics.coupling
+        found = np.einsum("ijk,ia,jb,kc->abc", found, a, a, a)
+    return np.asarray(found)

@@ -6,9 +6,8 @@ import numpy as np
 
 from irlx.robot.kinematics import Kinematics
 from irlx.transform.measures.ellipsoid import volume, volume_derivative
-from irlx.transform.measures.jacobian_derivative import jacobian_derivative
 from irlx.transform.measures.measure import Array, Measure
-from irlx.transform.measures.scaled_jacobian import of_task, scaled_jacobian
+from irlx.transform.measures.scaled_jacobian import task_jacobian, task_jacobian_derivative
 
 
 class Manipulability(Measure):
@@ -27,11 +26,10 @@ class Manipulability(Measure):
 
     def value(self, q: Array) -> float:
         """w."""
-        return volume(of_task(self.kinematics, scaled_jacobian(self.kinematics, q)))
+        return volume(task_jacobian(self.kinematics, q))
 
     def gradient(self, q: Array) -> Array:
         """w tr((J J')^-1 J dJ'/dq_j) for each joint j, shape (n,)."""
-        jacobian = scaled_jacobian(self.kinematics, q)
-        by_entries = volume_derivative(of_task(self.kinematics, jacobian)).ravel()
-        changed = of_task(self.kinematics, jacobian_derivative(jacobian))
+        jacobian, changed = task_jacobian_derivative(self.kinematics, q)
+        by_entries = volume_derivative(jacobian).ravel()
         return np.asarray(by_entries @ changed.reshape(by_entries.size, -1))

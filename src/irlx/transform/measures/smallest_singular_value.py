@@ -6,9 +6,8 @@ import numpy as np
 
 from irlx.robot.kinematics import Kinematics
 from irlx.transform.measures.ellipsoid import SINGULAR
-from irlx.transform.measures.jacobian_derivative import jacobian_derivative
 from irlx.transform.measures.measure import Array, Measure
-from irlx.transform.measures.scaled_jacobian import of_task, scaled_jacobian
+from irlx.transform.measures.scaled_jacobian import task_jacobian, task_jacobian_derivative
 
 CLUSTER = 1e-8
 """Difference, as a part of the largest, up to which singular values count as one multiple value."""
@@ -32,17 +31,15 @@ class SmallestSingularValue(Measure):
 
     def value(self, q: Array) -> float:
         """The smallest of the min(6, n) singular values; 0 at a singular posture."""
-        rows = of_task(self.kinematics, scaled_jacobian(self.kinematics, q))
-        singular = np.linalg.svd(rows, compute_uv=False)
+        singular = np.linalg.svd(task_jacobian(self.kinematics, q), compute_uv=False)
         return float(singular[-1]) if singular[-1] > SINGULAR * singular[0] else 0.0
 
     def gradient(self, q: Array) -> Array:
         """u' (dJ/dq_j) v for each joint j, the mean over a multiple smallest value, shape (n,)."""
-        jacobian = scaled_jacobian(self.kinematics, q)
-        left, singular, right = np.linalg.svd(of_task(self.kinematics, jacobian), full_matrices=False)
+        jacobian, changed = task_jacobian_derivative(self.kinematics, q)
+        left, singular, right = np.linalg.svd(jacobian, full_matrices=False)
         if singular[-1] <= SINGULAR * singular[0]:
             return np.zeros(q.size)
         first = int(np.argmax(singular - singular[-1] <= CLUSTER * singular[0]))
         by_entries = (left[:, first:] @ right[first:]).ravel() / (singular.size - first)
-        changed = of_task(self.kinematics, jacobian_derivative(jacobian))
         return np.asarray(by_entries @ changed.reshape(by_entries.size, -1))

@@ -59,6 +59,10 @@ class Tally:
             if self._first is None or found.tick < self._first.tick:
                 self._first = found
 
+    def add_other(self, rows: Integers, value: Floats, allowed: float, usual: float) -> None:
+        """Add values of which more is `allowed` than is `usual` for those of `add`."""
+        self.add(rows, value, allowed, rank=value / allowed * usual)
+
     def _finding(self, rows: Integers, value: Floats, allowed: Floats, flat: int, unit: str) -> Finding:
         row = int(rows[flat if value.ndim == 1 else flat // value.shape[1]])
         names = self._outline.header.joint_names

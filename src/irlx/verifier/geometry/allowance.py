@@ -9,7 +9,8 @@ from typing import Protocol
 import numpy as np
 
 from irlx.streams.joint_stream import Floats
-from irlx.verifier.geometry.rotations import about_axis, angle_between, rotation_vectors
+from irlx.verifier.geometry.rotations import about_axis, rotation_vectors
+from irlx.verifier.geometry.task_turns import turned_from, turned_off
 
 ROUNDS = 50
 """Most steps by which the place on a way is sought off which a shifted tool stands."""
@@ -55,11 +56,17 @@ class Allowance:
         """Whether a turn is allowed."""
         return any(band > 0.0 for band in self.bands[3:])
 
-    def turned_off(self, actual: Floats, asked: Floats) -> Floats:
-        """Angle (...) rad of what is left between rotations (..., 3, 3) once the bands are used."""
+    def turned_off(self, attitudes: Floats, asked: Floats) -> Floats:
+        """Angle (R,) rad of attitudes (R, ..) off rotations (R, 3, 3), once the bands are used."""
         if not self.turns:
-            return angle_between(actual, asked)
-        return self._turned(actual, asked)[1]
+            return turned_off(attitudes, asked)
+        return turned_off(attitudes, asked @ self._kept(self._turned(attitudes[:, :3], asked)))
+
+    def turned_from(self, attitudes: Floats, start: Floats, turned: Floats) -> Floats:
+        """The same off `turned` (R, 3, 3) behind a rotation `start` (3, 3), in its axes."""
+        if not self.turns:
+            return turned_from(attitudes, start, turned)
+        return self.turned_off(attitudes, start @ turned)
 
     def shifted_off(self, offsets: Floats) -> Floats:
         """What is left (R, 3) m of displacements in the frame of the pose asked for."""
@@ -89,7 +96,7 @@ class Allowance:
         """What is beyond the bands (R, 6), m and rad, at ways (R,)."""
         points, asked = way.at(along)
         shifted = self.shifted_off(np.einsum("rji,rj->ri", asked, positions - points))
-        kept = self._kept(self._turned(rotations, asked)[0])
+        kept = self._kept(self._turned(rotations, asked))
         between = np.swapaxes(asked, 1, 2) @ rotations
         return np.hstack([shifted, rotation_vectors(np.swapaxes(kept, 1, 2) @ between)])
 
@@ -99,7 +106,7 @@ class Allowance:
         `position` (R, 3) and `rotation` (R, 3, 3) are of the tool, `asked` of the poses asked for.
         """
         offsets = np.einsum("rji,rj->ri", asked[1], position - asked[0])
-        values = np.hstack([offsets, self._turned(rotation, asked[1])[0]])
+        values = np.hstack([offsets, self._turned(rotation, asked[1])])
         banded = np.array(self.bands) > 0.0
         passed = np.abs(values) - self._most
         return np.asarray(np.max(np.where(banded, passed, -inf), axis=1, initial=-inf))
@@ -115,8 +122,8 @@ class Allowance:
         most[3:][most[3:] >= pi] = inf
         return most
 
-    def _turned(self, actual: Floats, asked: Floats) -> tuple[Floats, Floats]:
-        """Turns (R, 3) about x, y, z, and the angle (R,) that is left of them.
+    def _turned(self, actual: Floats, asked: Floats) -> Floats:
+        """Turns (R, 3) about x, y, z that lead from rotations asked for (R, 3, 3) to others.
 
         R = Rz(c) Ry(b) Rx(a) has two triples of angles; that counts which passes the bands by less.
         """
@@ -127,8 +134,7 @@ class Allowance:
         c = np.arctan2(between[..., 1, 0], between[..., 0, 0])
         ways = np.stack([np.stack([a, b, c], axis=-1), _whole(np.stack([a, -b, c], axis=-1))])
         beyond = np.max(np.abs(ways) - self._most[3:], axis=-1)
-        turns = np.where((beyond[1] < beyond[0])[..., None], ways[1], ways[0])
-        return turns, angle_between(between, self._kept(turns))
+        return np.asarray(np.where((beyond[1] < beyond[0])[..., None], ways[1], ways[0]))
 
 
 EXACT = Allowance((0.0, 0.0, 0.0, 0.0, 0.0, 0.0))

@@ -117,10 +117,10 @@ class ArcWay:
         """Length of the way, m."""
         return self._shape.travel / self._shape.flatness
 
-    def deviation(self, positions: Floats, rotations: Floats) -> PathDeviation:
-        """Deviation of the next rows (positions (R, 3), rotations (R, 3, 3)) from the arc."""
+    def deviation(self, positions: Floats, attitudes: Floats) -> PathDeviation:
+        """Deviation of the next rows (positions (R, 3), attitudes (R, ..)) from the arc."""
         if self._chord is not None:
-            return self._chord.deviation(positions, rotations)
+            return self._chord.deviation(positions, attitudes)
         shape = self._shape
         angles = self._rounds(shape.angles(positions))
         inside = np.clip(angles, 0.0, shape.travel)
@@ -128,10 +128,12 @@ class ArcWay:
         # Of rows more than a whole turn apart nobody can tell how many turns they make, nor what share of
         # the way that is.
         if self._most_step < WHOLE_TURN:
-            travel, off_turn = shape.travel, self._off_turn(inside, rotations)
+            travel, off_turn = shape.travel, self._off_turn(inside, attitudes)
         else:
             travel, off_turn = float(inside[-1]), np.zeros(len(inside))
-        return PathDeviation(off_circle, off_turn, inside / shape.flatness, travel / shape.flatness, False)
+        wanted = None if attitudes.shape[1] == 3 else self._wanted(inside)
+        along, length = inside / shape.flatness, travel / shape.flatness
+        return PathDeviation(off_circle, off_turn, along, length, False, wanted)
 
     @property
     def reach(self) -> float:
@@ -153,26 +155,29 @@ class ArcWay:
         if self._chord is not None:
             return self._chord.at(way)
         angles = way * shape.flatness
-        points = shape.points(angles)
-        share, part = angles / shape.travel, shape.via / shape.travel
-        if len(self._turns) == 1:
-            return points, self._turns[0].at(share)
-        to_via, from_via = self._turns
-        early = to_via.at(eased(np.minimum(share / part, 1.0)))
-        late = from_via.at(1.0 - eased(np.minimum((1.0 - share) / (1.0 - part), 1.0)))
-        return points, np.where((angles < shape.via)[:, None, None], early, late)
+        return shape.points(angles), self._wanted(angles)
 
-    def _off_turn(self, inside: Floats, rotations: Floats) -> Floats:
+    def _wanted(self, inside: Floats) -> Floats:
+        """Orientations (R, 3, 3) of the arc at angles (R,) from its start."""
         share = inside / self._shape.travel
         if len(self._turns) == 1:
-            return self._turns[0].off(share, rotations)
+            return self._turns[0].at(share)
+        part = self._shape.via / self._shape.travel
+        before, behind = self._turns[0].at(eased(share / part)), eased((1.0 - share) / (1.0 - part))
+        first = (inside < self._shape.via)[:, None, None]
+        return np.asarray(np.where(first, before, self._turns[1].at(1.0 - behind)))
+
+    def _off_turn(self, inside: Floats, attitudes: Floats) -> Floats:
+        share = inside / self._shape.travel
+        if len(self._turns) == 1:
+            return self._turns[0].off(share, attitudes)
         before = inside < self._shape.via
         part = self._shape.via / self._shape.travel
         to_via, from_via = self._turns
         return np.where(
             before,
-            to_via.off(eased(share / part), rotations, before),
-            from_via.off(1.0 - eased((1.0 - share) / (1.0 - part)), rotations, ~before),
+            to_via.off(eased(share / part), attitudes, before),
+            from_via.off(1.0 - eased((1.0 - share) / (1.0 - part)), attitudes, ~before),
         )
 
     def _rounds(self, angles: Floats) -> Floats:

@@ -77,14 +77,18 @@ class Blend:
         cell = np.minimum((u * CELLS).astype(np.int64), CELLS - 1)
         return np.asarray(self._lengths[cell] + self._length_between(cell / CELLS, u))
 
-    def turned_off(self, u: Floats, rotations: Floats, allowance: Allowance = EXACT) -> Floats:
-        """Angle (R,) rad between rotations (R, 3, 3) and the orientation at u (R,), beyond an allowance.
+    def turned_off(self, u: Floats, attitudes: Floats, allowance: Allowance = EXACT) -> Floats:
+        """Angle (R,) rad between attitudes (R, ..) and the orientation at u (R,), beyond an allowance.
 
         Where the rates of a curve jump just where the blend begins or ends, it may take up either.
         """
         share = np.clip(self.way(u) / self.length, 0.0, 1.0)
-        off = [allowance.turned_off(rotations, turn.at(share)) for turn in self._turns]
+        off = [allowance.turned_off(attitudes, turn.at(share)) for turn in self._turns]
         return np.asarray(np.min(off, axis=0))
+
+    def rotations(self, u: Floats) -> Floats:
+        """Orientations (R, 3, 3) at u (R,); where there are several, one of them."""
+        return self._turns[0].at(np.clip(self.way(u) / self.length, 0.0, 1.0))
 
     @cached_property
     def _turns(self) -> list[BlendedTurn]:

@@ -33,7 +33,8 @@ class Placed:
     `position` m and `orientation` rad off it; `along` the way from its start, m; `leg` the number of the leg,
     whose end is the point of a blend nearest to the corner; `straight`: on a leg itself, not on a blend;
     `bend`: least curvature on the way from the row before, 1/m; `sharp`: a corner without a blend was passed
-    on the way from the row before.
+    on the way from the row before. `wanted` (R, 3, 3): the chain's own orientation there, told where not all
+    turns count.
     """
 
     position: Floats
@@ -43,13 +44,15 @@ class Placed:
     straight: NDArray[np.bool_]
     bend: Floats
     sharp: NDArray[np.bool_]
+    wanted: Floats | None = None
 
     @classmethod
-    def empty(cls, rows: int) -> Placed:
-        """Room for R rows."""
+    def empty(cls, rows: int, all_turns: bool = True) -> Placed:
+        """Room for R rows; without `all_turns` with room for orientations."""
         position, orientation, along, bend = np.zeros((4, rows))
         yes, no = np.ones(rows, dtype=np.bool_), np.zeros(rows, dtype=np.bool_)
-        return cls(position, orientation, along, np.zeros(rows, dtype=np.int64), yes, bend, no)
+        wanted = None if all_turns else np.zeros((rows, 3, 3))
+        return cls(position, orientation, along, np.zeros(rows, dtype=np.int64), yes, bend, no, wanted)
 
     def first(self, rows: int) -> Placed:
         """The first of the rows."""
@@ -61,6 +64,7 @@ class Placed:
             self.straight[:rows],
             self.bend[:rows],
             self.sharp[:rows],
+            None if self.wanted is None else self.wanted[:rows],
         )
 
 
@@ -111,12 +115,12 @@ class ChainWay:
         self._near, self._along = (self._part, way), way
 
     def take(self, positions: Floats, rotations: Floats, final: bool) -> Placed:
-        """Place the next rows (positions (R, 3), rotations (R, 3, 3)), or the first of them.
+        """Place the next rows (positions (R, 3), attitudes (R, ..)), or the first of them.
 
         Where a blend's distance has to be found out, rows wait until the next leg is reached: they have to be
         given again, with more behind them. With `final` there are no more.
         """
-        placed = Placed.empty(len(positions))
+        placed = Placed.empty(len(positions), rotations.shape[1] == 3)
         done, look = 0, FIRST_LOOK
         while done < len(positions):
             part = self._part
@@ -243,10 +247,8 @@ class ChainWay:
             return
         here = slice(start, start + len(at))
         leg, base = part.leg, self._bases[part.leg]
-        curve = self._legs[leg].curve
-        if part.blend:
-            blend = self._blends[leg]
-            assert blend is not None
+        curve, blend = self._legs[leg].curve, self._blends[leg] if part.blend else None
+        if blend is not None:
             turned, along = (
                 blend.turned_off(at, rotations[here], self._allowance),
                 base + curve.length - blend.distance + blend.way(at),
@@ -255,6 +257,8 @@ class ChainWay:
         else:
             turned, along = self._allowance.turned_off(rotations[here], curve.rotations(at)), base + at
             placed.leg[here] = leg
+        if placed.wanted is not None:
+            placed.wanted[here] = (curve if blend is None else blend).rotations(at)
         placed.position[here], placed.along[here] = off, along
         placed.orientation[here] = turned
         placed.straight[here] = not part.blend

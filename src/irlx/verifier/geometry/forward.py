@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 import numpy as np
 
 from irlx.robot.description import Joint, JointKind, RobotDescription
@@ -13,17 +15,42 @@ def forward(robot: RobotDescription, q: Floats) -> tuple[Floats, Floats]:
     """Tool positions (N, 3) m and rotations (N, 3, 3) in the root frame for joint values q (N, n).
 
     Each joint of the chain contributes T(xyz, rpy) T(axis, value); fixed joints stand at zero, locked
-    ones at their value.
+    ones at their value, and what follows another joint at the value that it follows from.
     """
+    poses = forward_of_links(robot, q, ())
+    return poses[0], poses[1]
+
+
+def forward_of_links(
+    robot: RobotDescription, q: Floats, links: Collection[str]
+) -> tuple[Floats, Floats, dict[str, Floats]]:
+    """`forward`, and the rotations (N, 3, 3) of some links of the chain on the way."""
     rows = len(q)
     position = np.zeros((rows, 3))
     rotation = np.broadcast_to(np.eye(3), (rows, 3, 3)).copy()
-    columns = {joint.name: index for index, joint in enumerate(robot.axes)}
+    told, passed = values_of(robot, q), {}
     for joint in robot.chain:
+        if joint.parent in links:
+            passed[joint.parent] = rotation
         held = np.full(rows, robot.locked.get(joint.name, 0.0))
-        values = q[:, columns[joint.name]] if joint.name in columns else held
-        position, rotation = after_joint(joint, values, position, rotation)
-    return position, rotation
+        position, rotation = after_joint(joint, told.get(joint.name, held), position, rotation)
+    if robot.tip in links:
+        passed[robot.tip] = rotation
+    return position, rotation, passed
+
+
+def values_of(robot: RobotDescription, q: Floats) -> dict[str, Floats]:
+    """Values (N,) of all joints of the chain that move, by their names, at joint vectors q (N, n)."""
+    found = {joint.name: q[:, column] for column, joint in enumerate(robot.axes)}
+    waiting = [joint for joint in robot.moving if joint.name not in found]
+    while waiting:
+        joint = waiting.pop(0)
+        mimic = joint.mimic
+        if mimic is None or mimic.leader not in found:
+            waiting.append(joint)
+        else:
+            found[joint.name] = mimic.multiplier * found[mimic.leader] + mimic.offset
+    return found
 
 
 def after_joint(joint: Joint, values: Floats, position: Floats, rotation: Floats) -> tuple[Floats, Floats]:

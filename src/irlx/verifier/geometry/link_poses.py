@@ -8,7 +8,7 @@ import numpy as np
 
 from irlx.robot.description import JointKind, RobotDescription
 from irlx.streams.joint_stream import Floats
-from irlx.verifier.geometry.forward import after_joint
+from irlx.verifier.geometry.forward import after_joint, values_of
 
 Poses = tuple[Floats, Floats]
 """Positions (N, 3) m and rotations (N, 3, 3), or (1, 3) and (1, 3, 3) of what rests."""
@@ -19,7 +19,7 @@ def link_poses(robot: RobotDescription, q: Floats, links: Collection[str]) -> di
 
     Joints off the chain to the tip stand at their locked value or at zero.
     """
-    columns = {joint.name: index for index, joint in enumerate(robot.axes)}
+    told = values_of(robot, q)
     parents = {joint.child: joint for joint in robot.joints}
     found: dict[str, Poses] = {robot.root: (np.zeros((1, 3)), np.eye(3)[None])}
 
@@ -27,8 +27,8 @@ def link_poses(robot: RobotDescription, q: Floats, links: Collection[str]) -> di
         if link not in found:
             joint = parents[link]
             position, rotation = pose(joint.parent)
-            moves = joint.name in columns
-            values = q[:, columns[joint.name]] if moves else np.array([robot.locked.get(joint.name, 0.0)])
+            moves = joint.name in told
+            values = told[joint.name] if moves else np.array([robot.locked.get(joint.name, 0.0)])
             if joint.kind is JointKind.FIXED:
                 values = np.zeros(1)
             if moves and len(position) == 1 and len(values) != 1:
@@ -44,7 +44,7 @@ def link_poses(robot: RobotDescription, q: Floats, links: Collection[str]) -> di
 
 def moved_links(robot: RobotDescription) -> frozenset[str]:
     """Names of the links that any axis moves."""
-    axes = {joint.name for joint in robot.axes}
+    axes = {joint.name for joint in robot.moving}
     children: dict[str, list[tuple[str, bool]]] = {}
     for joint in robot.joints:
         children.setdefault(joint.parent, []).append((joint.child, joint.name in axes))

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from irlx.streams.joint_stream import Floats
 from irlx.verifier.geometry.allowance import EXACT, Allowance
 from irlx.verifier.geometry.rotations import about_axis, rotation_vectors
+from irlx.verifier.geometry.task_turns import turns_asked
 
 TURN_RULES = 1e-3
 """A path shorter than this many m per rad of its turn takes its parameter from the angle: the position
@@ -21,6 +22,12 @@ DECIDED = 1e-5
 HALF_TURN = 1e-6
 """Turns nearer than this to half a turn, rad, may go either way round."""
 
+ROUNDS, SMALL_TURN = 6, 1e-5
+"""Steps by which the angle of a row is found where not all turns count, with slopes over so many rad."""
+
+UNASKED = 1e-6
+"""Turns of which less than this part is asked for are no way at all."""
+
 Pose = tuple[Floats, Floats]
 
 
@@ -30,6 +37,7 @@ class PathDeviation:
 
     `position` m and `orientation` rad off the path; `along` = distance travelled, in the unit that
     gives the parameter (m, or rad where the turn does, `by_angle`); `length` of the whole way in that unit.
+    `wanted` (R, 3, 3): the path's own orientation there, told where not all turns count.
     """
 
     position: Floats
@@ -37,6 +45,7 @@ class PathDeviation:
     along: Floats
     length: float
     by_angle: bool
+    wanted: Floats | None = None
 
 
 class LineWay:
@@ -75,9 +84,9 @@ class LineWay:
         """Length of the way: m, or rad where it goes by the angle."""
         return self.angle if self.by_angle else self.distance
 
-    def deviation(self, positions: Floats, rotations: Floats) -> PathDeviation:
-        """Deviation of the next rows (R, 3), (R, 3, 3) from the way."""
-        found = [self._from(turn, positions, rotations) for turn in self._turns]
+    def deviation(self, positions: Floats, attitudes: Floats) -> PathDeviation:
+        """Deviation of the next rows (positions (R, 3), attitudes (R, ..)) from the way."""
+        found = [self._from(turn, positions, attitudes) for turn in self._turns]
         best, self._turns = settled([deviation.orientation for deviation in found], self._turns)
         return found[best]
 
@@ -102,16 +111,18 @@ class LineWay:
         points = self._start[0] + way[:, None] * forward
         return points, self._start[1] @ about_axis(axis, share * angle)
 
-    def _from(self, turn: Floats, positions: Floats, rotations: Floats) -> PathDeviation:
+    def _from(self, turn: Floats, positions: Floats, attitudes: Floats) -> PathDeviation:
         angle = float(np.linalg.norm(turn))
         offsets = positions - self._start[0]
-        turned = self._start[1].T @ rotations
+        turned = self._start[1].T @ attitudes[:, :3]
         if not self.by_angle:
             scale = self.distance
             parameter = offsets @ self._step / scale**2
         elif angle > 0.0:
             scale = angle
             angles = _angles_about(turn / angle, turned)
+            if attitudes.shape[1] > 3:
+                angles, scale = self._asked_angles(turn / angle, angles, attitudes, scale)
             # Half of what the turn leaves of a full one lies before its start, half behind its end.
             parameter = np.where(angles < 0.5 * angle - np.pi, angles + 2.0 * np.pi, angles) / angle
         else:
@@ -119,8 +130,28 @@ class LineWay:
         inside = np.clip(parameter, 0.0, 1.0)
         axis = turn / angle if angle > 0.0 else np.array([1.0, 0.0, 0.0])
         off_line = np.linalg.norm(offsets - inside[:, None] * self._step, axis=1)
-        off_turn = self._allowance.turned_off(turned, about_axis(axis, inside * angle))
-        return PathDeviation(off_line, off_turn, inside * scale, scale, self.by_angle)
+        turns = about_axis(axis, inside * angle)
+        off_turn = self._allowance.turned_from(attitudes, self._start[1], turns)
+        wanted = None if attitudes.shape[1] == 3 else self._start[1] @ turns
+        return PathDeviation(off_line, off_turn, inside * scale, scale, self.by_angle, wanted)
+
+    def _asked_angles(
+        self, axis: Floats, angles: Floats, attitudes: Floats, scale: float
+    ) -> tuple[Floats, float]:
+        """Angles (R,) that come nearest in the turns asked for, from those that do in all; and the length of
+        the way. It is 0 where none of it is asked for: then no row tells how far it is.
+        """
+        for _ in range(ROUNDS):
+            off, ahead, behind = (
+                turns_asked(attitudes, self._start[1] @ about_axis(axis, angles + step))
+                for step in (0.0, SMALL_TURN, -SMALL_TURN)
+            )
+            rate = (ahead - behind) / (2.0 * SMALL_TURN)
+            size = np.sum(rate**2, axis=1)
+            if not (size > UNASKED**2).any():
+                return np.zeros(len(angles)), 0.0
+            angles = angles - np.sum(rate * off, axis=1) / np.maximum(size, UNASKED**2)
+        return angles, scale
 
 
 class Turn:
@@ -140,18 +171,17 @@ class Turn:
         axis = self._ways[0] / angle if angle > 0.0 else np.array([1.0, 0.0, 0.0])
         return np.asarray(self._start @ about_axis(axis, share * angle))
 
-    def off(self, share: Floats, rotations: Floats, counts: NDArray[np.bool_] | None = None) -> Floats:
-        """Angle (R,) rad between rotations (R, 3, 3) and the turn at the shares (R,) of its way.
+    def off(self, share: Floats, attitudes: Floats, counts: NDArray[np.bool_] | None = None) -> Floats:
+        """Angle (R,) rad between attitudes (R, ..) and the turn at the shares (R,) of its way.
 
         Only rows that `counts` (R,) help to tell which way round it goes.
         """
-        turned = self._start.T @ rotations
         counts = np.ones(len(share), dtype=bool) if counts is None else counts
         found = []
         for way in self._ways:
             angle = float(np.linalg.norm(way))
             axis = way / angle if angle > 0.0 else np.array([1.0, 0.0, 0.0])
-            found.append(self._allowance.turned_off(turned, about_axis(axis, share * angle)))
+            found.append(self._allowance.turned_from(attitudes, self._start, about_axis(axis, share * angle)))
         best, self._ways = settled([off[counts] for off in found], self._ways)
         return found[best]
 

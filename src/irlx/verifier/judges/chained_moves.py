@@ -8,13 +8,14 @@ from math import sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.promises import PATH_ORIENTATION, PATH_POSITION, PATH_STEP, PROGRAM_EXCESS
+from irlx.promises import FOLLOWED_TURN, PATH_ORIENTATION, PATH_POSITION, PATH_STEP, PROGRAM_EXCESS
 from irlx.streams.joint_stream import Floats, Integers
 from irlx.verifier.chain_legs import ChainLegs, end_reach
 from irlx.verifier.demands import Demand, allowance_of
 from irlx.verifier.findings.tally import Tally
 from irlx.verifier.geometry.chains import ChainWay, Placed
 from irlx.verifier.geometry.rotations import angle_between
+from irlx.verifier.geometry.task_turns import followed_off, turned_off
 from irlx.verifier.tools import Pose
 
 HANDS_OVER = 2
@@ -36,7 +37,10 @@ class ChainTallies:
 
 
 class _Waiting:
-    """Rows of a chain not judged yet: poses (R + 1, ..) from the row before them on, indices, blocks."""
+    """Rows of a chain not judged yet: poses (R + 1, ..) from the row before them on, indices, blocks.
+
+    Their `rotations` are attitudes (R + 1, ..).
+    """
 
     def __init__(self, start: Pose) -> None:
         self.positions, self.rotations = start[0][None], start[1][None]
@@ -45,6 +49,10 @@ class _Waiting:
     def add(self, poses: Pose, rows: Integers, block: int) -> None:
         """Rows of one block that come next."""
         self.positions = np.concatenate([self.positions, poses[0]])
+        if self.rotations.shape[1] < poses[1].shape[1]:
+            # Where a chain starts nothing is judged: no axes are needed.
+            lacking = poses[1].shape[1] - self.rotations.shape[1]
+            self.rotations = np.pad(self.rotations, ((0, 0), (0, lacking), (0, 0)))
         self.rotations = np.concatenate([self.rotations, poses[1]])
         self.rows = np.concatenate([self.rows, rows])
         self.blocks = np.concatenate([self.blocks, np.full(len(rows), block, dtype=np.int64)])
@@ -89,6 +97,7 @@ class ChainRows:
         self._accelerations = np.zeros(2)
         self._speeds, self._sharp = np.zeros((3, 1)), np.zeros(1, dtype=np.bool_)
         self._furthest, self._unknown = 0.0, False
+        self._wanted = start[1][None, :3]
         first = legs.legs[0].curve
         self._reaches = min(start_reach, first.room[0]), end_reach(chain[-1])
         self._begun = _Waiting(start) if chain[0].crosses[0] else None
@@ -129,7 +138,7 @@ class ChainRows:
         way = curve.nearest(positions, 0.0)
         inside = np.clip(way, 0.0, curve.length)
         on = np.linalg.norm(positions - curve.points(inside), axis=1) <= PATH_POSITION
-        on &= angle_between(rotations, curve.rotations(inside)) <= PATH_ORIENTATION
+        on &= turned_off(rotations, curve.rotations(inside)) <= PATH_ORIENTATION
         beyond = np.flatnonzero(on & (way >= self._reaches[0] - PATH_STEP))
         count = int(beyond[0]) if beyond.size else len(on)
         away = np.linalg.norm(positions[:count] - corner, axis=1)
@@ -137,7 +146,7 @@ class ChainRows:
             if away.size and not away[-1] <= self._reaches[0] + PATH_POSITION:
                 # It ought to be on its path by now.
                 self._tallies.path[0].add(begun.rows[count - 1 : count], away[-1:], self._reaches[0])
-            nothing = np.zeros((0, 3)), np.zeros((0, 3, 3))
+            nothing = np.zeros((0, 3)), rotations[:0]
             return nothing, rows[:0]
         self._tallies.path[0].add(
             begun.rows[:count],
@@ -154,6 +163,7 @@ class ChainRows:
         self._furthest = float(way[count + 1])
         self._hint = self._furthest if len(self._legs.legs) == 1 else 0.0
         self._way.begin_at(self._furthest)
+        self._wanted = curve.rotations(way[count + 1 : count + 2])
         off = np.linalg.norm(positions[count + 1] - curve.points(way[count + 1 : count + 2]), axis=1)
         self._tallies.path[0].add(begun.rows[count + 1 : count + 2], off, PATH_POSITION)
         return (left.positions[1:], left.rotations[1:]), left.rows
@@ -186,7 +196,7 @@ class ChainRows:
         allowed = law.speed * self._dt * (1.0 + PROGRAM_EXCESS) + PATH_POSITION
         self._tallies.progress.add(self._lasts[-1:], missing, allowed, rank=missing / allowed, unit="m")
         moved = np.linalg.norm(np.diff(held.positions, axis=0), axis=1)
-        turned = angle_between(held.rotations[1:], held.rotations[:-1])
+        turned = turned_off(held.rotations[1:], held.rotations[:-1, :3])
         for way, bound, unit in ((moved, law.speed, "m/s"), (turned, law.speed_ori, "rad/s")):
             rates = way / self._dt
             high = bound * (1.0 + PROGRAM_EXCESS) + 2.0 * PATH_STEP / self._dt
@@ -262,7 +272,7 @@ class ChainRows:
         with np.errstate(divide="ignore"):
             speed = np.minimum(speed, np.sqrt(acc / placed.bend))
         moved = np.linalg.norm(np.diff(self._waiting.positions[: count + 1], axis=0), axis=1)
-        turned = angle_between(self._waiting.rotations[1 : count + 1], self._waiting.rotations[:count])
+        turned = self._turned(placed)
         for way, bound, unit in (
             (np.maximum(moved, np.abs(np.diff(alongs[1:]))), speed, "m/s"),
             (turned, np.where(self._allowance.turns, np.inf, turn), "rad/s"),
@@ -270,6 +280,15 @@ class ChainRows:
             rates = way / dt
             high = bound * (1.0 + PROGRAM_EXCESS) + 2.0 * PATH_STEP / dt
             self._tallies.speed.add(rows, rates, bound, ~(rates <= high), rates / high, unit)
+
+    def _turned(self, placed: Placed) -> Floats:
+        """Angles (R,) rad from row to row; where not all turns count, those of the path itself."""
+        count = len(placed.along)
+        if placed.wanted is None:
+            return angle_between(self._waiting.rotations[1 : count + 1], self._waiting.rotations[:count])
+        wanted = np.concatenate([self._wanted, placed.wanted])
+        self._wanted = wanted[-1:]
+        return angle_between(wanted[1:], wanted[:-1])
 
     def _add_acceleration(
         self, rows: Integers, placed: Placed, alongs: Floats, near: tuple[Integers, Integers, Integers]
@@ -305,7 +324,11 @@ class ChainRows:
         assert goal is not None
         off = np.linalg.norm((waiting.positions[-1] - goal[0])[None], axis=1)
         self._tallies.goal[0].add(row, off, PATH_POSITION)
-        turned = self._allowance.turned_off(waiting.rotations[-1], goal[1])[None]
-        self._tallies.goal[1].add(row, turned, PATH_ORIENTATION)
+        attitude = waiting.rotations[-1:]
+        self._tallies.goal[1].add(row, self._allowance.turned_off(attitude, goal[1][None]), PATH_ORIENTATION)
+        if self._chain[-1].gives_orientation:
+            self._tallies.goal[1].add_other(
+                row, followed_off(attitude, goal[1]), FOLLOWED_TURN, PATH_ORIENTATION
+            )
         missing = np.array([self._way.left - float(self._alongs[-1])])
         self._tallies.progress.add(row, missing, PATH_POSITION, rank=missing / PATH_POSITION, unit="m")

@@ -23,9 +23,10 @@ from irlx.blocks import (
     ToolBlock,
 )
 from irlx.promises import CLOSURE, RETURN, TOUCH
+from irlx.streams.joint_stream import Floats
 from irlx.verifier.evidence import Evidence
 from irlx.verifier.findings.finding import NOT_CHECKED, Check
-from irlx.verifier.geometry.rotations import angle_between
+from irlx.verifier.geometry.task_turns import turned_off
 from irlx.verifier.moves import MoveRows
 from irlx.verifier.rows import Rows, Stretch
 from irlx.verifier.tools import Pose
@@ -77,7 +78,7 @@ class ClosureChecks:
             place = rows.place(start)
             if place is not None:
                 own = rows.pose_in(place, self._ids[start], frame)
-                self._poses.setdefault((start, frame), []).append(own)
+                self._poses.setdefault((start, frame), []).append((own[0], self._attitude(own[1], start)))
         self._watch_positions(rows)
         for stretch in rows.stretches:
             move, found = self._moves.get(stretch.block), self._returns.get(stretch.block)
@@ -91,9 +92,14 @@ class ClosureChecks:
                 goal = self._goal(move, self._at_start)
                 if move.last in self._starts and goal is not None:
                     # Where the tool was told to stand counts as where it stands.
-                    self._poses.setdefault((move.last, move.block.frame), []).append(goal)
+                    told = goal[0], self._attitude(goal[1], move.last)
+                    self._poses.setdefault((move.last, move.block.frame), []).append(told)
                 if found is not None and goal is not None:
                     self._end(int(stretch.rows[-1]), found, goal)
+
+    def _attitude(self, rotation: Floats, row: int) -> Floats:
+        """Attitude (1, ..) of a tool of a rotation (3, 3) in a row in which a block ends."""
+        return self._evidence.placer.attitude(rotation, self._evidence.posture(row))
 
     def _goal(self, move: MoveRows, start: Pose) -> Pose | None:
         """Where a move that starts at a pose, or where the one before was to end, is told to stop."""
@@ -221,5 +227,6 @@ def _reconfigures(block: Block) -> bool:
 
 
 def _same_pose(one: Pose, other: Pose) -> bool:
+    """Whether a pose is another one, of which the attitude (1, ..) is given."""
     near = float(np.linalg.norm(one[0] - other[0])) <= RETURN
-    return near and float(angle_between(one[1], other[1])) <= RETURN
+    return near and float(turned_off(other[1], one[1])[0]) <= RETURN

@@ -21,7 +21,7 @@ from irlx.verifier.demands import Demand
 from irlx.verifier.evidence import Evidence
 from irlx.verifier.findings.tally import Tally
 from irlx.verifier.geometry.forward import forward
-from irlx.verifier.geometry.rotations import angle_between
+from irlx.verifier.geometry.task_turns import turned_off
 from irlx.verifier.rows import Rows, Stretch
 from irlx.verifier.tools import Pose
 
@@ -137,7 +137,8 @@ class CrossingPtps:
         """How far tools of postures (R, n) are off a pose, in tolerances."""
         position, rotation = self._poses(demand, q)
         away = np.linalg.norm(position - corner[0], axis=1) / PATH_POSITION
-        return np.asarray(np.maximum(away, angle_between(rotation, corner[1]) / PATH_ORIENTATION))
+        attitudes = self._evidence.placer.attitudes(rotation, q)
+        return np.asarray(np.maximum(away, turned_off(attitudes, corner[1]) / PATH_ORIENTATION))
 
     def _add_zones(
         self,

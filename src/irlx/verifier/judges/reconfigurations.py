@@ -8,7 +8,7 @@ from irlx.blocks import ReconfigureBlock
 from irlx.promises import PATH_ORIENTATION, PATH_POSITION, PROGRAM_EXCESS
 from irlx.verifier.evidence import Evidence
 from irlx.verifier.findings.finding import Check
-from irlx.verifier.geometry.rotations import angle_between
+from irlx.verifier.geometry.task_turns import turned_off
 from irlx.verifier.moves import law_in_force
 from irlx.verifier.rows import Rows, Stretch
 from irlx.verifier.tools import Pose
@@ -39,10 +39,10 @@ class ReconfigurationChecks:
                 continue
             if stretch.begins or self._held is None:
                 self._held = rows.pose(stretch.before.start, stretch.block)
-            positions, rotations = rows.positions[stretch.after], rows.rotations[stretch.after]
+            positions, attitudes = rows.positions[stretch.after], rows.attitudes[stretch.after]
             off = np.linalg.norm(positions - self._held[0], axis=1)
             self._position.add(stretch.rows, off, PATH_POSITION)
-            self._orientation.add(stretch.rows, angle_between(self._held[1], rotations), PATH_ORIENTATION)
+            self._orientation.add(stretch.rows, turned_off(attitudes, self._held[1]), PATH_ORIENTATION)
             self._add_speeds(rows, stretch)
 
     def _add_speeds(self, rows: Rows, stretch: Stretch) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 
 from irlx.blocks import MoveKind
 from irlx.promises import (
+    FOLLOWED_TURN,
     PATH_ORIENTATION,
     PATH_POSITION,
     PATH_STEP,
@@ -25,6 +26,7 @@ from irlx.verifier.findings.finding import Check
 from irlx.verifier.geometry.allowance import EXACT, Allowance
 from irlx.verifier.geometry.paths import LineWay
 from irlx.verifier.geometry.rotations import angle_between
+from irlx.verifier.geometry.task_turns import followed_off
 from irlx.verifier.judges.chained_moves import HANDS_OVER, ChainRows, ChainTallies
 from irlx.verifier.moves import MoveRows
 from irlx.verifier.rows import Rows, Stretch
@@ -52,6 +54,7 @@ class ToolMoveChecks:
         self._bands = evidence.tally("tolerance bands", "m|rad")
         self._course: Course | None = None
         self._along, self._furthest = np.zeros(2), 0.0
+        self._wanted = np.eye(3)[None]
         self._skipped: dict[int, str] = {}
         self._chains = {demand.move.block.id: chain for chain in evidence.chains for demand in chain}
         self._chain: ChainRows | None = None
@@ -86,7 +89,7 @@ class ToolMoveChecks:
             return
         here = stretch.after
         final = int(stretch.rows[-1]) == chain[-1].move.last
-        self._chain.take((rows.positions[here], rows.rotations[here]), stretch.rows, stretch.block, final)
+        self._chain.take((rows.positions[here], rows.attitudes[here]), stretch.rows, stretch.block, final)
 
     def _chain_of(self, chain: tuple[Demand, ...]) -> ChainRows | None:
         tallies = ChainTallies(self._goal, self._path, self._progress, self._speed, self._acceleration)
@@ -141,12 +144,12 @@ class ToolMoveChecks:
             if not any(demand.crosses):
                 self._add_joint_rates(rows, stretch, move)
         elif course.way is not None:
-            allowance = allowance_of(move.block)
+            allowance, wanted = allowance_of(move.block), None
             if allowance.shifts:
                 self._add_shifted(rows, stretch, course, allowance)
             else:
-                self._add_path(rows, stretch, course, allowance)
-            self._add_tool_speed(rows, stretch, course, allowance)
+                wanted = self._add_path(rows, stretch, course, allowance)
+            self._add_tool_speed(rows, stretch, course, allowance, wanted)
         elif course.goal is None:
             self._skipped[move.block.id] = _OTHER_FRAME
         else:
@@ -173,8 +176,10 @@ class ToolMoveChecks:
         apart = (reached[0] - goal[0])[None]
         left = allowance.shifted_off(apart @ goal[1]) if allowance.shifts else apart
         self._goal[0].add(row, np.linalg.norm(left, axis=1), PATH_POSITION)
-        turned = allowance.turned_off(reached[1][None], goal[1][None])
-        self._goal[1].add(row, turned, PATH_ORIENTATION)
+        attitude = self._evidence.placer.attitude(reached[1], self._evidence.posture(move.last))
+        self._goal[1].add(row, allowance.turned_off(attitude, goal[1][None]), PATH_ORIENTATION)
+        if demand.gives_orientation:
+            self._goal[1].add_other(row, followed_off(attitude, goal[1]), FOLLOWED_TURN, PATH_ORIENTATION)
         self._add_bands(row, allowance, (reached[0][None], reached[1][None]), (goal[0][None], goal[1][None]))
 
     def _add_bands(self, rows: Integers, allowance: Allowance, tool: Pose, asked: Pose) -> None:
@@ -196,16 +201,17 @@ class ToolMoveChecks:
         asked = allowance.asked(course.way, positions, rotations)
         left = allowance.shifted_off(np.einsum("rji,rj->ri", asked[1], positions - asked[0]))
         self._path[0].add(stretch.rows, np.linalg.norm(left, axis=1), PATH_POSITION)
-        turned = allowance.turned_off(rotations, asked[1])
+        turned = allowance.turned_off(rows.attitudes[here], asked[1])
         self._path[1].add(stretch.rows, turned, PATH_ORIENTATION)
         self._add_bands(stretch.rows, allowance, (positions, rotations), asked)
 
-    def _add_path(self, rows: Rows, stretch: Stretch, course: Course, allowance: Allowance) -> None:
+    def _add_path(self, rows: Rows, stretch: Stretch, course: Course, allowance: Allowance) -> Floats | None:
+        """Judge rows against their path; the path's own orientation there where not all turns count."""
         assert course.way is not None
         if allowance.turns:
             tool = rows.positions[stretch.after], rows.rotations[stretch.after]
             self._add_bands(stretch.rows, allowance, tool, allowance.asked(course.way, *tool))
-        found = course.way.deviation(rows.positions[stretch.after], rows.rotations[stretch.after])
+        found = course.way.deviation(rows.positions[stretch.after], rows.attitudes[stretch.after])
         self._path[0].add(stretch.rows, found.position, PATH_POSITION)
         self._path[1].add(stretch.rows, found.orientation, PATH_ORIENTATION)
         along = np.concatenate([self._along, found.along])
@@ -225,18 +231,28 @@ class ToolMoveChecks:
         bound = course.move.law.acc_ori if short_arc else course.bounds[1]
         self._add_acceleration(stretch, along, bound, "rad/s2" if found.by_angle else "m/s2")
         self._along = along[-2:]
+        return found.wanted
 
     def _add_acceleration(self, stretch: Stretch, along: Floats, bound: float, unit: str) -> None:
         rates = np.abs(np.diff(along, n=2)) / self._dt**2
         high = bound * (1.0 + PROGRAM_EXCESS) + 4.0 * PATH_STEP / self._dt**2
         self._acceleration.add(stretch.rows, rates, bound, ~(rates <= high), rates / high, unit)
 
-    def _add_tool_speed(self, rows: Rows, stretch: Stretch, course: Course, allowance: Allowance) -> None:
+    def _add_tool_speed(
+        self, rows: Rows, stretch: Stretch, course: Course, allowance: Allowance, wanted: Floats | None
+    ) -> None:
         """No faster than programmed, in what no band leaves to the robot."""
         here = stretch.after
         positions, rotations = rows.before(stretch)
         moved = np.linalg.norm(rows.positions[here] - positions, axis=1)
-        turned = angle_between(rows.rotations[here], rotations)
+        if wanted is None:
+            turned = angle_between(rows.rotations[here], rotations)
+        else:
+            # What of a turn does not count may make the rest of it any faster: the path itself is judged.
+            begins = self._evidence.demands[course.move.block.id].start.pose
+            start = begins[1][None] if stretch.begins and begins is not None else self._wanted
+            passed = np.concatenate([start, wanted])
+            self._wanted, turned = passed[-1:], angle_between(passed[1:], passed[:-1])
         for way, bound, unit, is_free in (
             (moved, course.speed, "m/s", allowance.shifts),
             (turned, course.move.law.speed_ori, "rad/s", allowance.turns),
