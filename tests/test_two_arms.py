@@ -21,7 +21,7 @@ pytestmark = pytest.mark.req("TRF-23")
 FOLDER = Path(__file__).parents[1] / "programs" / "two_arms"
 CELL = FOLDER / "two_arms.toml"
 RADIUS, HEIGHT, LEAN = 0.025, 0.005, np.radians(40.0)
-SLOW = np.radians(2.0)
+SLOW = np.radians(6.0)
 TURNED = Rotation.from_euler("x", -90, degrees=True)
 
 
@@ -106,13 +106,13 @@ def test_the_weld_ends_in_the_posture_of_both_arms_that_it_began_in() -> None:
     assert np.abs(weld[-1] - weld[0]).max() <= CLOSURE
 
 
-def test_slow_joints_of_both_arms_slow_the_second_pass_on_its_circle() -> None:
+def test_slow_joints_of_both_arms_slow_the_second_pass_on_its_arc() -> None:
     part = rows_of(PASS)
     q, dt = run().q[part], run().stream.header.dt
     speeds = np.abs(np.diff(q, axis=0)).max(axis=0) / dt
     assert speeds.max() <= SLOW * (1 + 1e-9)
-    assert speeds[:7].max() == pytest.approx(SLOW, rel=1e-3)
-    assert speeds[7:].max() == pytest.approx(SLOW, rel=1e-3)
+    assert speeds[:7].max() == pytest.approx(SLOW, rel=2e-2)
+    assert speeds[7:].max() == pytest.approx(SLOW, rel=2e-2)
     _, position, _, _ = poses(q)
     assert np.hypot(np.hypot(*position[:, :2].T) - RADIUS, position[:, 2] - HEIGHT).max() <= PATH_POSITION
     (slowed,) = run().summary.slowed
@@ -122,14 +122,14 @@ def test_slow_joints_of_both_arms_slow_the_second_pass_on_its_circle() -> None:
 def test_frozen_joints_of_the_left_shoulder_stand_bit_by_bit() -> None:
     part = run().q[rows_of(line_of("POSITION(0, 0, -60)"))]
     assert (part[:, :3] == part[0, :3]).all()
-    assert np.ptp(part[:, 3:7], axis=0).max() > 0.05
+    assert np.ptp(part[:, 3:7], axis=0).max() > 0.02
 
 
 def test_the_left_elbow_keeps_off_the_lamp() -> None:
     begin = rows_of(line_of("MOVE_INC LIN POSITION(0, 0, 60);")).start
     end = rows_of(line_of("RECONFIGURATION"), "ReconfigureBlock").start
     least = min(rows[begin:end].min() for rows in nearest(run(), CELL).values())
-    assert least >= 0.040
+    assert least >= 0.050
 
 
 def test_both_arms_come_home() -> None:

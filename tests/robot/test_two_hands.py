@@ -16,6 +16,7 @@ from irlx.robot.kinematics import Kinematics
 from irlx.robot.relation import JointRelation
 from irlx.robot.urdf import read_urdf
 from irlx.robot.urdf_values import RobotModelError
+from irlx.verifier.geometry.link_poses import link_poses
 
 pytestmark = pytest.mark.req("TRF-23")
 
@@ -137,3 +138,27 @@ def test_rows_are_scaled_by_both_arms_and_no_view_is_made_twice():
     assert seen.row_scale[0] == pytest.approx(1 / both)
     with pytest.raises(KeyError):
         plain.relative_to(replace(FRAME, link="nowhere"))
+
+
+def test_joints_that_follow_others_have_their_part_in_the_relative_jacobian():
+    follows = '<mimic joint="left_2" multiplier="-0.5" offset="0.2"/>\n    <limit lower="0.08726646259971647"'
+    text = URDF.replace('<limit lower="0.08726646259971647"', follows, 1)
+    led = read_urdf(text, "torch", carriers=("left_hand",))
+    assert led.joint_names == tuple(name for name in LEFT + RIGHT if name != "left_4")
+    seen, h = Kinematics(led).relative_to(FRAME), 1e-6
+
+    def by_verifier(q):
+        found = link_poses(led, q[None], ("left_hand", "torch"))
+        hand, torch = (pin.SE3(found[name][1][0], found[name][0][0]) for name in ("left_hand", "torch"))
+        inside = pin.SE3(Rotation.from_quat(FRAME.orientation).as_matrix(), np.array(FRAME.position))
+        return (hand * inside).actInv(torch)
+
+    for q in np.random.default_rng(3).uniform(-1.5, 1.5, (4, 13)):
+        here = by_verifier(q)
+        left, jacobian = seen.difference(q, here)
+        assert left == pytest.approx(np.zeros(6), abs=1e-9)
+        for joint in range(13):
+            step = np.zeros(13)
+            step[joint] = h
+            ahead, behind = (pin.log6(here.actInv(by_verifier(q + s))).vector for s in (step, -step))
+            assert jacobian[:, joint] == pytest.approx((ahead - behind) / (2 * h), abs=1e-8), (q, joint)

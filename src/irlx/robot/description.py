@@ -121,7 +121,7 @@ class RobotDescription:
         return tuple(reversed(found))
 
     @cached_property
-    def moved(self) -> tuple[Joint, ...]:
+    def chains(self) -> tuple[Joint, ...]:
         """The joints of all chains, to the tip and to the carriers: depth first, as axes come."""
         wanted = {joint.name for link in (self.tip, *self.carriers) for joint in self.chain_to(link)}
         children: dict[str, list[Joint]] = {}
@@ -139,7 +139,7 @@ class RobotDescription:
     @cached_property
     def moving(self) -> tuple[Joint, ...]:
         """The joints of the chains that move: the axes, and those that follow them."""
-        return tuple(j for j in self.moved if j.kind is not JointKind.FIXED and j.name not in self.locked)
+        return tuple(j for j in self.chains if j.kind is not JointKind.FIXED and j.name not in self.locked)
 
     @cached_property
     def axes(self) -> tuple[Joint, ...]:
@@ -209,12 +209,12 @@ class RobotDescription:
         """SHA-256 (hex) of the chains' geometry and task: two robots that move alike have the same one."""
         chain = [
             {**asdict(joint), "lower": None, "upper": None, "speed": None, "kind": joint.kind.value}
-            for joint in self.moved
+            for joint in self.chains
         ]
         for joint in chain:
             if joint["mimic"] is None:
                 del joint["mimic"]
-        locked = {joint.name: self.locked[joint.name] for joint in self.moved if joint.name in self.locked}
+        locked = {joint.name: self.locked[joint.name] for joint in self.chains if joint.name in self.locked}
         told: dict[str, object] = {"tip": self.tip, "chain": chain, "locked": locked}
         if self.coordinates != COORDINATES:
             told["task"] = self.coordinates
