@@ -65,6 +65,23 @@ PICTURES = (
         "two_walls", "two_walls/two_walls.irl", "two_walls/two_walls.toml", "planar4: between two walls", 62.0
     ),
     Picture("mobile8", "combined/combined.irl", "combined/combined.toml", "mobile8: every option at once"),
+    Picture(
+        "two_arms",
+        "two_arms/two_arms.irl",
+        "two_arms/two_arms.toml",
+        "dual14: a pipe in one hand, a torch in the other",
+        25.0,
+        10.0,
+        hands=("left_hand",),
+    ),
+    Picture("mobile9", "mobile/mobile.irl", "mobile/mobile.toml", "mobile9: the platform on a path of its own"),
+    Picture("gantry9", "gantry/gantry.irl", "gantry/gantry.toml", "gantry9: three slides and an arm"),
+    Picture("rail6", "rail/rail.irl", "rail/rail.toml", "rail6: an arm on a rail"),
+    Picture("snake20", "snake/snake.irl", "snake/snake.toml", "snake20: twenty joints"),
+    Picture("irb6", "five_axes/five_axes.irl", "five_axes/five_axes.toml", "irb6: five axes"),
+    Picture(
+        "free_turn", "free_turn/free_turn.irl", "free_turn/free_turn.toml", "six axes, the tool free to turn"
+    ),
 )
 
 
@@ -107,7 +124,7 @@ def draw(picture: Picture) -> None:
 
 def link_frames(kinematics: Kinematics, q: np.ndarray) -> dict[str, pin.SE3]:
     """Pose of every link of the tree in the world, in posture q."""
-    pin.forwardKinematics(kinematics.model, kinematics.data, q)
+    pin.forwardKinematics(kinematics.model, kinematics.data, kinematics.expanded(q))
     robot = kinematics.description
     found = {}
     for link in (robot.root, *(joint.child for joint in robot.joints)):
