@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from irlx.cell.build import limits_of
 from irlx.cell.errors import CellError
@@ -15,6 +15,9 @@ from irlx.diagnostics import Diagnostic
 from irlx.robot.description import COORDINATES, RobotDescription
 from irlx.robot.limits import JointLimits
 from irlx.robot.urdf import read_urdf
+
+if TYPE_CHECKING:
+    from irlx.cell.suggested_task import SuggestedTask
 
 
 @dataclass(frozen=True)
@@ -35,15 +38,17 @@ class BareRobot:
 def bare_robot(model: str, tip: str | None = None, folder: Path | None = None) -> BareRobot:
     """The robot of that name, or of the URDF at that path from `folder`.
 
-    Its task is the named robot's; of a URDF with fewer axes than a pose has coordinates it is what the joints
-    move, if that is no more. Raises CellError as `load_cell` does.
+    Its task is the named robot's; of a URDF with fewer axes than a pose has coordinates that of
+    `suggested_task`. Raises CellError as `load_cell` does.
     """
     given: dict[str, Any] = {"model": model} if tip is None else {"model": model, "tip": tip}
     asked = RobotSection(**given)
     folder = folder or Path()
     if model not in robot_names():
-        task = _moved_coordinates(asked, folder)
-        asked = asked if task is None else asked.model_copy(update={"task": task})
+        task = _suggested(asked, folder)
+        if task is not None:
+            update = {"task": list(task.coordinates), "task_frame": task.frame, "free": list(task.free)}
+            asked = asked.model_copy(update=update)
     section = with_packaged_defaults(asked)
     robot = load_robot(section, model, folder)
     section = without_absent_joints(section, asked, robot)
@@ -54,8 +59,8 @@ def bare_robot(model: str, tip: str | None = None, folder: Path | None = None) -
     return BareRobot(robot, limits, None if section.start is None else tuple(section.start), section)
 
 
-def _moved_coordinates(asked: RobotSection, folder: Path) -> list[str] | None:
-    """Coordinates of the tool pose that the joints move, None where these are all, or more than the joints.
+def _suggested(asked: RobotSection, folder: Path) -> SuggestedTask | None:
+    """A task for a URDF with few axes; None where it needs none, and where there is none.
 
     None as well for a URDF that cannot be used: what is wrong with it is told when it is loaded.
     """
@@ -63,12 +68,9 @@ def _moved_coordinates(asked: RobotSection, folder: Path) -> list[str] | None:
         robot = read_urdf((folder / (asked.model or "")).read_text(encoding="utf-8"), asked.tip)
     except (OSError, ValueError):
         return None
-    # One joint alone makes no robot: Pinocchio gives its Jacobian as a vector.
-    if not 1 < len(robot.axes) < len(COORDINATES):
+    if not 0 < len(robot.axes) < len(COORDINATES):
         return None
     # Imported here: robots with enough axes are told of without Pinocchio.
-    from irlx.robot.kinematics import Kinematics
+    from irlx.cell.suggested_task import suggested_task
 
-    fixed = Kinematics(replace(robot, coordinates=())).immovable.coordinates
-    moved = [name for name in COORDINATES if name not in fixed]
-    return moved if 0 < len(moved) <= len(robot.axes) else None
+    return suggested_task(robot)

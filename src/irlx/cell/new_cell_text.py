@@ -11,7 +11,7 @@ import numpy as np
 
 from irlx.cell.bare_robot import BareRobot
 from irlx.cell.build import from_si
-from irlx.robot.description import COORDINATES
+from irlx.robot.description import COORDINATES, RobotDescription
 
 _SPEEDING_UP = 0.25
 """Time, s, in which accelerations that nobody knows take a joint to its full speed."""
@@ -55,8 +55,7 @@ def _robot(bare: BareRobot, choices: CellChoices) -> list[str]:
         _line(f"tip = {_text(robot.tip)}", "the link that moves address"),
     ]
     if robot.coordinates != COORDINATES and not bare.has_name:
-        task = f"task = [{', '.join(map(_text, robot.coordinates))}]"
-        lines.append(_line(task, "what moves ask for, in the frame of the tip: the rest no joint moves"))
+        lines += _task(robot)
     lines += _wrapped("# Axes, from base to tip: ", joints)
     if choices.start is not None:
         lines.append(_line(f"start = {_numbers(choices.start)}", "the posture at the start of a run"))
@@ -69,6 +68,23 @@ def _robot(bare: BareRobot, choices: CellChoices) -> list[str]:
         "# Joints of the chain that are held, deg | mm:",
         f"# locked = {{ {_text(robot.joint_names[0]) if robot.joint_names else 'joint'} = 0 }}",
     ]
+    return lines
+
+
+def _task(robot: RobotDescription) -> list[str]:
+    """Lines on what moves ask for."""
+    where = "the tip" if robot.task_frame is None else "the link below"
+    rest = "the rest no joint moves"
+    if robot.free:
+        rest = "turns come as they do"
+    elif robot.task_frame is not None:
+        rest = "the other turn follows"
+    task = f"task = [{', '.join(map(_text, robot.coordinates))}]"
+    lines = [_line(task, f"what moves ask for, in the frame of {where}: {rest}")]
+    if robot.task_frame is not None:
+        lines.append(_line(f"task_frame = {_text(robot.task_frame)}", "the link before the last axis"))
+    if robot.free:
+        lines.append(_line(f"free = [{', '.join(map(_text, robot.free))}]", "nobody asks for these"))
     return lines
 
 

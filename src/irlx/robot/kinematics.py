@@ -262,12 +262,15 @@ class Kinematics:
         pin.computeJointJacobians(self.model, self.data, q)
         pose = pin.updateFramePlacement(self.model, self.data, self._tip_frame)
         jacobian = pin.getFrameJacobian(self.model, self.data, self._tip_frame, _LOCAL)
+        if self.model.nv == 1:
+            # Of a single joint it comes as a vector.
+            jacobian = jacobian.reshape(6, 1)
         return pose, jacobian if self.coupling is None else jacobian.dot(self.coupling)
 
     def tool_motions(self, q: Array) -> Array:
         """Tool Jacobian in the tool frame by all N joints of `model`, (6, N), each of them moving alone."""
         pin.computeJointJacobians(self.model, self.data, self.expanded(q))
-        return np.array(pin.getFrameJacobian(self.model, self.data, self._tip_frame, _LOCAL))
+        return np.array(pin.getFrameJacobian(self.model, self.data, self._tip_frame, _LOCAL)).reshape(6, -1)
 
     @cached_property
     def carried(self) -> Array:
@@ -364,7 +367,7 @@ class Kinematics:
         return (*self.task.coordinates, *names)
 
     @cached_property
-    def _usual_motions(self) -> Array:
+    def usual_motions(self) -> Array:
         """Matrices (P, 6, n) by which joints move the tool in the frame of the task, displacements divided by
         the reach, at postures with nothing special about them."""
         found = []
@@ -382,7 +385,7 @@ class Kinematics:
         """Coordinates that the task leaves out and no joint moves either, as a planar arm's height."""
         if self.task.is_whole:
             return Task(())
-        moved = np.max(np.abs(self._usual_motions), axis=(0, 2), initial=0.0)
+        moved = np.max(np.abs(self.usual_motions), axis=(0, 2), initial=0.0)
         # Lengths count as they are here, and not in reaches.
         moved[:3] *= self.description.reach
         still = moved <= _STILL * max(1.0, self.description.reach)
@@ -418,7 +421,7 @@ class Kinematics:
 
     def _usual_rank(self, rows: list[int]) -> int:
         ranks = []
-        for motions in self._usual_motions:
+        for motions in self.usual_motions:
             values = np.linalg.svd(motions[rows], compute_uv=False)
             ranks.append(
                 int(np.count_nonzero(values > _ROUNDING * max(1.0, values[0]))) if values.size else 0

@@ -82,7 +82,7 @@ ROBOT_MODEL = (
     warning(
         "IRL665",
         "{joint} follows {other} (mimic)",
-        "hold it by robot.locked, or take a tip before it, if irlx refuses it as an axis",
+        "it is no axis: it moves with the other one, by multiplier and offset; IRL612 tells where it cannot",
     ),
     warning(
         "IRL666",
@@ -97,7 +97,7 @@ ROBOT_MODEL = (
     warning(
         "IRL668",
         "{found} axes move '{tip}', a pose has six coordinates",
-        "say in robot.task which coordinates count (those that the joints move), or take another tip",
+        "irlx new suggests a task: what the joints move, in robot.task, robot.task_frame and robot.free",
     ),
     error(
         "IRL669",
