@@ -6,13 +6,13 @@ import os
 from pathlib import Path
 
 from irlx.cell.errors import CellError
+from irlx.cell.load import read_bytes
 from irlx.cell.robot_check.bodies import check_bodies
 from irlx.cell.robot_check.findings import ModelFindings, joint_key, length_of
 from irlx.cell.robot_check.joints import check_joints, check_lengths
 from irlx.cell.robot_check.model_text import JointText, ModelText, model_text
 from irlx.diagnostics import Diagnostic, Place, report
 from irlx.diagnostics.diagnostic import near_matches
-from irlx.diagnostics.near_files import near_files
 from irlx.robot.urdf import read_urdf
 from irlx.robot.urdf_values import RobotModelError
 
@@ -51,14 +51,9 @@ def check_robot(path: str | os.PathLike[str], tip: str | None = None) -> list[Di
 
 def _text(path: Path) -> str:
     try:
-        return path.read_text(encoding="utf-8")
-    except FileNotFoundError as cause:
-        raise CellError(report("IRL001", path=path, near=near_files(path))) from cause
-    except IsADirectoryError as cause:
-        raise CellError(report("IRL007", path=path)) from cause
-    except (OSError, ValueError) as cause:
-        words = cause.strerror if isinstance(cause, OSError) else str(cause)
-        raise CellError(report("IRL002", Place(str(path)), path=path, cause=words)) from cause
+        return read_bytes(path).decode()
+    except UnicodeDecodeError as cause:
+        raise CellError(report("IRL002", Place(str(path)), path=path, cause=str(cause))) from cause
 
 
 def _check_readable(text: str, tip: str | None, findings: ModelFindings) -> None:
