@@ -269,7 +269,7 @@ def test_nearest_posture_keeps_frozen_joints(koch11) -> None:
 def nearest(arm, rotation: np.ndarray, position: np.ndarray):
     free = np.ones(arm.n, dtype=bool)
     found = nearest_approach(arm.kinematics, rotation, position, arm.q, limits_of(arm), free)
-    return closest(found, arm.kinematics.description.reach)
+    return closest(list(found), arm.kinematics.description.reach)
 
 
 @pytest.mark.req("MOT-22")

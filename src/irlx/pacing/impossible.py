@@ -22,7 +22,7 @@ from irlx.pacing.slowdown.ladder import TimedCurve
 from irlx.pacing.slowdown.planned import Refusal
 from irlx.pacing.too_near import told
 from irlx.pacing.walk import Halt
-from irlx.promises import FOLLOWED_TURN
+from irlx.promises import FOLLOWED_TURN, PATH_ORIENTATION, PATH_POSITION
 from irlx.robot.description import RobotDescription
 from irlx.robot.kinematics import Kinematics, Sizes
 from irlx.robot.limits import JointLimits
@@ -290,10 +290,14 @@ def goal_shortfall(
     `whole`: what follows from the task's coordinates counts as well.
     """
     kinematics = around.kinematics
-    approaches = nearest_approach(kinematics, rotation, position, q, around.limits, around.free)
-    if whole and kinematics.following.size:
-        target = kinematics.target(rotation, position)
-        approaches = [_in_all(found, kinematics, target) for found in approaches]
+    target, approaches = kinematics.target(rotation, position), list[Nearest]()
+    for found in nearest_approach(kinematics, rotation, position, q, around.limits, around.free):
+        approaches.append(
+            _in_all(found, kinematics, target) if whole and kinematics.following.size else found
+        )
+        if approaches[-1].distance <= PATH_POSITION and approaches[-1].angle <= PATH_ORIENTATION:
+            # Nearer than there nothing can come.
+            break
     return closest(approaches, kinematics.description.reach)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -52,8 +53,8 @@ def nearest_approach(
     q: Array,
     limits: JointLimits,
     free: NDArray[np.bool_],
-) -> list[Nearest]:
-    """Postures within the position limits that come nearest to a tool pose, one from each start.
+) -> Iterator[Nearest]:
+    """Postures within the position limits that come nearest to a tool pose, one from each start in turn.
 
     Pose in the world: rotation (3, 3), position (3,) m. Starts are q and `RESTARTS` fixed random
     postures within the limits; frozen joints keep their values.
@@ -61,7 +62,8 @@ def nearest_approach(
     target = kinematics.target(rotation, position)
     lower, upper = limits.position_lower, limits.position_upper
     starts = _starts(q, limits, free)
-    return [nearest_in_bounds(kinematics, target, start, lower, upper, free) for start in starts]
+    for start in starts:
+        yield nearest_in_bounds(kinematics, target, start, lower, upper, free)
 
 
 def nearest_posture(
@@ -83,7 +85,7 @@ def nearest_posture(
     solver = TickSolver(kinematics, qp, max_iterations=_ITERATIONS)
     target = kinematics.target(rotation, position)
     criterion = Posture(weights, q)
-    approaches = nearest_approach(kinematics, rotation, position, q, limits, free)
+    approaches = list(nearest_approach(kinematics, rotation, position, q, limits, free))
     best: Array | None = None
     misses: Array | None = None
     least = missed = np.inf
