@@ -110,8 +110,8 @@ def test_the_quick_cases_judge_everything(outcome) -> None:
         for check in report.checks
         if check.status == "ok"
     }
-    # Conditions between joints and waits are tried in tests/cli, test_constraints.py and test_signals.py, bands
-    # in tests/test_tolerance.py.
+    # Conditions between joints and waits are tried in tests/cli, test_constraints.py and test_signals.py,
+    # bands in tests/test_tolerance.py.
     assert passed == set(CHECKS) - {"constraints", "waits still", "waiting time", "tolerance bands"}
 
 
