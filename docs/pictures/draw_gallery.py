@@ -74,7 +74,7 @@ PICTURES = (
         10.0,
         hands=("left_hand",),
     ),
-    Picture("mobile9", "mobile/mobile.irl", "mobile/mobile.toml", "mobile9: the platform on a path of its own"),
+    Picture("mobile9", "mobile/mobile.irl", "mobile/mobile.toml", "mobile9: a platform on its own path"),
     Picture("gantry9", "gantry/gantry.irl", "gantry/gantry.toml", "gantry9: three slides and an arm"),
     Picture("rail6", "rail/rail.irl", "rail/rail.toml", "rail6: an arm on a rail"),
     Picture("snake20", "snake/snake.irl", "snake/snake.toml", "snake20: twenty joints"),
