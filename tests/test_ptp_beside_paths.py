@@ -263,6 +263,27 @@ def test_a_dry_run_takes_them_as_stops(arm) -> None:
     assert [one.code for one in found if one.code in ("IRL432", "IRL436")] == []
 
 
+@pytest.mark.parametrize("tick", [4.0, 10.0, 20.0])
+@pytest.mark.parametrize(
+    "behind", ["MOVE_INC SPLINE PATH ({0}, {1}, {2});", "MOVE_INC LIN {0};\nMOVE_INC LIN {1};"]
+)
+def test_a_line_that_is_all_corner_is_judged(tmp_path, tick: float, behind: str) -> None:
+    """Half of it belongs to the corner to the PTP, half to the blend behind it: hardly a row is on it."""
+    bench = Bench(tmp_path, "arm7", tick)
+    points = ("POSITION(0, 60, 0)", "POSITION(0, 60, 60)", "POSITION(0, 0, 60)")
+    body = f"MOVE PTP {bench.posture(1, 0.6, 0, -0.6, 0.6, 0.6)} C_PTP := 50;\n"
+    body += "MOVE_INC LIN POSITION(0, 0, 30) C_CP := 15;\n" + behind.format(*points)
+    run = bench.run(body)
+    assert "IRL436" in codes(run)
+    bench.verified(run)
+    PREPARED[:] = [bench.program, bench.cell]
+    q = run.q.copy()
+    # A row of the blend behind it.
+    q[np.flatnonzero(run.block == 3)[3], 0] += 3e-4
+    report = irlx.verify(replace(run, stream=with_q(run, q)), cell=bench.cell)
+    assert "path position" in {check.name for check in report.failed}, str(report)
+
+
 # ---- Sabotage
 
 

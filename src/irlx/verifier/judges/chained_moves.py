@@ -97,6 +97,8 @@ class ChainRows:
         self._accelerations = np.zeros(2)
         self._speeds, self._sharp = np.zeros((3, 1)), np.zeros(1, dtype=np.bool_)
         self._furthest, self._unknown = 0.0, False
+        self._fresh = 0
+        """Of the rows judged next so many have only one known row before them: no change of speed is told."""
         self._wanted = start[1][None, :3]
         first = legs.legs[0].curve
         self._reaches = min(start_reach, first.room[0]), end_reach(chain[-1])
@@ -155,18 +157,28 @@ class ChainRows:
             rank=away / max(self._reaches[0], PATH_POSITION) * PATH_POSITION,
         )
         self._begun = None
-        left = begun.without(count + 2)
+        last = count + 1
+        if not on[last] and self._leaves_first_leg(float(way[last])):
+            # So short is the leg that the second row lies on the blend to the next one already.
+            last, self._fresh = count, 1
+        left = begun.without(last + 1)
         self._waiting = _Waiting((left.positions[0], left.rotations[0]))
         if self._held is not None:
             self._held = _Waiting((left.positions[0], left.rotations[0]))
-        self._alongs, self._points = way[count : count + 2], positions[count : count + 2]
-        self._furthest = float(way[count + 1])
+        self._alongs, self._points = way[[count, last]], positions[[count, last]]
+        self._furthest = float(way[last])
         self._hint = self._furthest if len(self._legs.legs) == 1 else 0.0
         self._way.begin_at(self._furthest)
-        self._wanted = curve.rotations(way[count + 1 : count + 2])
-        off = np.linalg.norm(positions[count + 1] - curve.points(way[count + 1 : count + 2]), axis=1)
-        self._tallies.path[0].add(begun.rows[count + 1 : count + 2], off, PATH_POSITION)
+        self._wanted = curve.rotations(way[last : last + 1])
+        off = np.linalg.norm(positions[last] - curve.points(way[last : last + 1]), axis=1)
+        self._tallies.path[0].add(begun.rows[last : last + 1], off, PATH_POSITION)
         return (left.positions[1:], left.rotations[1:]), left.rows
+
+    def _leaves_first_leg(self, way: float) -> bool:
+        """Whether a place on the first leg may lie where the blend at its end has taken over."""
+        first = self._legs.legs[0]
+        blend = first.corner.distance if len(self._legs.legs) > 1 else 0.0
+        return way > first.curve.length - blend - PATH_STEP
 
     def _before_end(self, held: _Waiting, poses: Pose, rows: Integers, block: int) -> tuple[Pose, Integers]:
         """The rows that do not belong to the corner to the PTP behind; others are held."""
@@ -302,12 +314,14 @@ class ChainRows:
         bound = np.concatenate([self._accelerations, allowed])
         bound = np.max([bound[:-2], bound[1:-1], bound[2:]], axis=0)
         self._accelerations = np.concatenate([self._accelerations, allowed])[-2:]
-        self._add_rates(rows, np.abs(np.diff(alongs, n=2)), bound)
+        fresh, self._fresh = self._fresh, 0
+        self._add_rates(rows[fresh:], np.abs(np.diff(alongs, n=2))[fresh:], bound[fresh:])
         points = np.concatenate([self._points, self._waiting.positions[1 : count + 1]])
         self._points = points[-2:]
         sharp = np.concatenate([self._sharp, placed.sharp])
         self._sharp = sharp[-1:]
         turns: NDArray[np.bool_] = sharp[1:] | sharp[:-1]
+        turns[:fresh] = False
         if turns.any():
             change = np.linalg.norm(np.diff(points, n=2, axis=0), axis=1)
             most = np.maximum(np.maximum(legs.acc[before], legs.acc[leg]), legs.acc[behind])
