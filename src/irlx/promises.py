@@ -21,6 +21,10 @@ PATH_ORIENTATION = 1e-6
 TOLERANCE_BAND = 1e-9
 """Largest amount by which the tool passes a band of WITH TOLERANCE, m or rad."""
 
+GOES_ON = 3e-9
+"""A path WITH TOLERANCE goes on from where that of the move before ended if the tool stands within its bands
+and this much, m or rad."""
+
 FOLLOWED_TURN = 1e-4
 """Largest angle by which a robot with fewer axes may be off a target in a turn that its task leaves out and
 that follows from the task's own coordinates, rad: what targets typed by hand lack."""

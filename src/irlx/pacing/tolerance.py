@@ -27,7 +27,7 @@ from irlx.pacing.postures import posture_of_pose
 from irlx.pacing.rows import MotionRows
 from irlx.pacing.situation import Situation
 from irlx.pacing.virtual_constraint import VirtualConstraint
-from irlx.promises import TOLERANCE_BAND
+from irlx.promises import GOES_ON
 from irlx.robot.description import COORDINATES, Joint, JointKind, RobotDescription
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
@@ -93,7 +93,7 @@ def standing_off(
     found = [np.concatenate([apart.translation, turns]) for turns in ways]
     beyond = [float(np.max(np.maximum(np.abs(values) - allowed, 0.0))) for values in found]
     nearer = int(np.argmin(beyond))
-    return StandingOff(found[nearer], beyond[nearer] <= TOLERANCE_BAND)
+    return StandingOff(found[nearer], beyond[nearer] <= GOES_ON)
 
 
 def widened(

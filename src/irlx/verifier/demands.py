@@ -19,7 +19,7 @@ from irlx.blocks import (
     SignalBlock,
     Target,
 )
-from irlx.promises import JOINT_LINE, PATH_ORIENTATION, PATH_POSITION, TOLERANCE_BAND
+from irlx.promises import GOES_ON, JOINT_LINE, PATH_ORIENTATION, PATH_POSITION
 from irlx.robot.description import RobotDescription
 from irlx.streams.joint_stream import Floats
 from irlx.verifier.frames import FramesInForce
@@ -203,8 +203,8 @@ def _goes_on(before: Demand, move: MoveRows, start: Place, tools: ToolsInForce) 
 def _within(allowance: Allowance, asked: Pose, reached: Pose) -> bool:
     """Whether a pose is as far off another one as it may be, to rounding."""
     left = allowance.shifted_off((asked[1].T @ (reached[0] - asked[0]))[None])
-    near = float(np.linalg.norm(left)) <= TOLERANCE_BAND
-    return near and float(allowance.turned_off(reached[1][None], asked[1][None])[0]) <= TOLERANCE_BAND
+    near = float(np.linalg.norm(left)) <= GOES_ON
+    return near and float(allowance.turned_off(reached[1][None], asked[1][None])[0]) <= GOES_ON
 
 
 def _crossing(demands: list[Demand]) -> list[Demand]:

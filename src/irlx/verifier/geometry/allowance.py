@@ -18,6 +18,12 @@ ROUNDS = 50
 SETTLED = 1e-13
 """A step that is this short, m, is the last one."""
 
+MET = 1e-10
+"""What may be left beyond the bands, m or rad, before a place is sought with more care .."""
+
+GRID, HOLLOWS, SECTIONS, GOLDEN = 128, 3, 70, 0.5 * (5.0**0.5 - 1.0)
+""".. among so many places, from so many of them on, by so many golden sections."""
+
 ASIDE = 1e-8
 """Way, m, by which the change of what is beyond the bands is told."""
 
@@ -26,8 +32,12 @@ class Way(Protocol):
     """A way of the tool."""
 
     @property
+    def by_angle(self) -> bool:
+        """Whether it goes by the angle of its turn, rad, and not by its length, m."""
+
+    @property
     def reach(self) -> float:
-        """Length of the way of the position, m."""
+        """Length of the way, m or rad."""
 
     def nearest(self, positions: Floats) -> Floats:
         """Way (R,) m to the points nearest to positions (R, 3)."""
@@ -80,7 +90,8 @@ class Allowance:
         steps of Gauss and Newton where least is beyond the bands, 1 rad counting like 1 m.
         """
         along = way.nearest(positions)
-        for _ in range(ROUNDS if self.shifts else 0):
+        sought = self.hides(way)
+        for _ in range(ROUNDS if sought else 0):
             left = self._left(way, along, positions, rotations)
             aside = np.where(along + ASIDE <= way.reach, along + ASIDE, along - ASIDE)
             slope = (self._left(way, aside, positions, rotations) - left) / (aside - along)[:, None]
@@ -90,7 +101,43 @@ class Allowance:
             if np.max(np.abs(moved - along), initial=0.0) <= SETTLED:
                 break
             along = moved
+        if sought:
+            off = np.linalg.norm(self._left(way, along, positions, rotations), axis=1)
+            rest = np.flatnonzero(off > MET)
+            if rest.size:
+                along[rest] = self._searched(way, along[rest], positions[rest], rotations[rest])
         return way.at(along)
+
+    def hides(self, way: Way) -> bool:
+        """Whether the bands hide how far along a way the tool is: what else tells it they leave open."""
+        return self.shifts or (self.turns and way.by_angle)
+
+    def _searched(self, way: Way, along: Floats, positions: Floats, rotations: Floats) -> Floats:
+        """The places (R,) of `asked` by golden sections: where bands end, steps by slopes may get stuck.
+
+        They are sought about a few of places all over the way, those where least is beyond.
+        """
+
+        def off(places: Floats) -> Floats:
+            return np.asarray(np.linalg.norm(self._left(way, places, positions, rotations), axis=1))
+
+        grid = np.linspace(0.0, way.reach, GRID + 1)
+        values = np.pad(
+            [off(np.full(len(along), place)) for place in grid], ((1, 1), (0, 0)), constant_values=inf
+        )
+        hollow = (values[1:-1] <= values[:-2]) & (values[1:-1] <= values[2:])
+        order = np.argsort(np.where(hollow, values[1:-1], inf), axis=0)[:HOLLOWS]
+        best, least = along, off(along)
+        for start in grid[order]:
+            low, high = (np.clip(start + side / GRID * way.reach, 0.0, way.reach) for side in (-1.0, 1.0))
+            for _ in range(SECTIONS):
+                inner = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+                before = off(inner[0]) < off(inner[1])
+                low, high = np.where(before, low, inner[0]), np.where(before, inner[1], high)
+            found = 0.5 * (low + high)
+            value = off(found)
+            best, least = np.where(value < least, found, best), np.minimum(value, least)
+        return np.asarray(best)
 
     def _left(self, way: Way, along: Floats, positions: Floats, rotations: Floats) -> Floats:
         """What is beyond the bands (R, 6), m and rad, at ways (R,)."""

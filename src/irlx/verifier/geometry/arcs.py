@@ -136,9 +136,14 @@ class ArcWay:
         return PathDeviation(off_circle, off_turn, along, length, False, wanted)
 
     @property
+    def by_angle(self) -> bool:
+        """Whether the angle of the turn gives the parameter of the way: of one too short to be an arc."""
+        return self._chord is not None and self._chord.by_angle
+
+    @property
     def reach(self) -> float:
-        """Length of the way of the position, m."""
-        return self.length
+        """Length of the way, m, or rad where it goes by the angle."""
+        return self.length if self._chord is None else self._chord.reach
 
     def nearest(self, positions: Floats) -> Floats:
         """Way (R,) m to the points nearest to the next positions (R, 3)."""

@@ -92,23 +92,22 @@ class LineWay:
 
     @property
     def reach(self) -> float:
-        """Length of the way of the position, m."""
-        return self.distance
+        """Length of the way, m, or rad where it goes by the angle."""
+        return self.length
 
     def nearest(self, positions: Floats) -> Floats:
-        """Way (R,) m to the points nearest to positions (R, 3)."""
-        if self.distance == 0.0:
-            return np.zeros(len(positions))
+        """Way (R,) to the points nearest to positions (R, 3); to its middle where positions do not tell."""
+        if self.by_angle:
+            return np.full(len(positions), 0.5 * self.length)
         return np.clip((positions - self._start[0]) @ self._step / self.distance, 0.0, self.distance)
 
     def at(self, way: Floats) -> Pose:
-        """Positions (R, 3) and orientations (R, 3, 3) after ways (R,) m."""
+        """Positions (R, 3) and orientations (R, 3, 3) after ways (R,), m or rad."""
         turn = self._turns[0]
         angle = float(np.linalg.norm(turn))
         axis = turn / angle if angle > 0.0 else np.array([1.0, 0.0, 0.0])
-        forward = self._step / self.distance if self.distance > 0.0 else np.zeros(3)
-        share = way / self.distance if self.distance > 0.0 else way
-        points = self._start[0] + way[:, None] * forward
+        share = way / self.length if self.length > 0.0 else way
+        points = self._start[0] + share[:, None] * self._step
         return points, self._start[1] @ about_axis(axis, share * angle)
 
     def _from(self, turn: Floats, positions: Floats, attitudes: Floats) -> PathDeviation:

@@ -145,7 +145,7 @@ class ToolMoveChecks:
                 self._add_joint_rates(rows, stretch, move)
         elif course.way is not None:
             allowance, wanted = allowance_of(move.block), None
-            if allowance.shifts:
+            if allowance.hides(course.way):
                 self._add_shifted(rows, stretch, course, allowance)
             else:
                 wanted = self._add_path(rows, stretch, course, allowance)
