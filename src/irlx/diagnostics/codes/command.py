@@ -16,6 +16,7 @@ COMMAND = (
         "the plugin {name} cannot be imported: {cause}",
         "name a module that Python finds, or a file that ends with .py",
     ),
+    error("IRL010", "{command} needs {package}: pip install 'irlx[{extra}]'"),
     error(
         "IRL090",
         "internal error: {cause}",
