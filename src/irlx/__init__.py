@@ -53,6 +53,7 @@ _HOMES = {
     "convert": "irlx.conversion",
     "format_source": "irlx.language.format",
     "load": "irlx.program",
+    "load_ipython_extension": "irlx.notebook.magic",
     "record": "irlx.running",
     "register": "irlx.registration",
     "reproduce": "irlx.reproduction",

@@ -33,6 +33,8 @@ from irlx.streams.joint_stream import FORMAT_VERSION, StreamHeader
 from irlx.streams.making import Making
 
 PathLike = str | os.PathLike[str]
+CellGiven = Cell | PathLike | None
+"""A cell that has been loaded, the path of its file, or None where it is found beside the program."""
 InputsGiven = InputFunction | Mapping[str, Sequence[tuple[float, float]]] | PathLike | None
 """A function of name and time (s), traces by name (times in s with the value from each on), or a CSV file."""
 
@@ -62,7 +64,7 @@ class Job:
 
 def prepare(
     program: Program | Recorded | PathLike,
-    cell: PathLike | None = None,
+    cell: CellGiven = None,
     tick_ms: float | None = None,
     max_slow: float | None = None,
     max_steps: int | None = None,
@@ -75,8 +77,9 @@ def prepare(
 ) -> Job:
     """Load what a run needs; `files`, `input` and `output` as in `run`.
 
-    `cell` None: the file that SYSTEM SPECIFICATION names, else the program's own name with .toml. A stream
-    file in the place of a program is replayed, at its own tick.
+    `cell` None: the file that SYSTEM SPECIFICATION names, else the program's own name with .toml; a Cell is
+    taken as it is, whatever its file says. A stream file in the place of a program is replayed, at its own
+    tick.
     Raises ProgramError, CellError, or IrlxError with IRL006 for a number out of range.
     """
     if not isinstance(program, Program | Recorded):
@@ -101,31 +104,42 @@ def prepare(
     if not is_time(pause_s):
         cause = "a pause lasts a number of seconds, 0 or more"
         raise IrlxError(report("IRL006", option="--pause", value=f"{pause_s:g}", cause=cause))
+    more = _channels(program, loaded, files, input, output), Pauses(pause_s, on_pause)
+    untold = _untold(
+        inputs=inputs, input=input, files=files, on_pause=on_pause, made_cell=isinstance(cell, Cell)
+    )
     making = Making(
-        cell_sha256=sha256_of(Path(loaded.file)),
+        cell_sha256="" if isinstance(cell, Cell) else sha256_of(Path(loaded.file)),
         max_slow=None if max_slow is None else float(max_slow),
         max_steps=max_steps,
         pause=float(pause_s),
         **_inputs_told(inputs),
         software=software(),
-        given=_untold(inputs=inputs, input=input, files=files, on_pause=on_pause),
+        given=untold,
         replay_of=program.stream_sha256 if isinstance(program, Recorded) else "",
     )
-    more = _channels(program, loaded, files, input, output), Pauses(pause_s, on_pause), making
+    return Job(program, loaded, _tick_ns(tick_ms, program, loaded), slowest, steps, said, *more, making)
+
+
+def _tick_ns(tick_ms: float | None, program: Program | Recorded, cell: Cell) -> int:
+    """Duration of a tick, ns. Raises IrlxError, IRL006, for one that is too short or too long."""
     if tick_ms is None:
-        tick_ns = program.header.tick_ns if isinstance(program, Recorded) else loaded.tick_ns
-        return Job(program, loaded, tick_ns, slowest, steps, said, *more)
+        return program.header.tick_ns if isinstance(program, Recorded) else cell.tick_ns
     if not LEAST_TICK_MS <= tick_ms <= LONGEST_TICK_MS:
         cause = f"a tick lasts {LEAST_TICK_MS:g} to {LONGEST_TICK_MS:g} ms"
         raise IrlxError(report("IRL006", option="--tick", value=f"{tick_ms:g}", cause=cause))
-    return Job(program, loaded, round(tick_ms * 1e6), slowest, steps, said, *more)
+    return round(tick_ms * 1e6)
 
 
-def _loaded_cell(program: Program | Recorded, given: PathLike | None) -> Cell:
-    if isinstance(program, Program):
-        return load_cell(cell_path(program, given))
-    cell = load_cell(cell_of(program, None if given is None else Path(given)))
-    check_joints(program, cell)
+def _loaded_cell(program: Program | Recorded, given: CellGiven) -> Cell:
+    if isinstance(given, Cell):
+        cell = given
+    elif isinstance(program, Program):
+        cell = load_cell(cell_path(program, given))
+    else:
+        cell = load_cell(cell_of(program, None if given is None else Path(given)))
+    if isinstance(program, Recorded):
+        check_joints(program, cell)
     return cell
 
 
@@ -170,12 +184,12 @@ def _inputs_told(inputs: InputsGiven) -> dict[str, str]:
 
 
 def _untold(
-    inputs: InputsGiven, input: InputGiven, files: PathLike | None, on_pause: object
+    inputs: InputsGiven, input: InputGiven, files: PathLike | None, on_pause: object, made_cell: bool
 ) -> tuple[str, ...]:
     """Names of what a caller gave that no stream can hold."""
     told = inputs is None or isinstance(inputs, str | os.PathLike)
     given = {"inputs": not told, "input": isinstance(input, str), "files": files is not None}
-    given["on_pause"] = on_pause is not None
+    given |= {"on_pause": on_pause is not None, "cell": made_cell}
     return tuple(name for name, holds in given.items() if holds)
 
 
@@ -203,11 +217,13 @@ def inputs_of(cell: Cell, given: InputsGiven) -> Inputs:
     return Inputs({**cell.inputs, **own})
 
 
-def _loaded(path: PathLike, cell: PathLike | None) -> Program:
+def _loaded(path: PathLike, cell: CellGiven) -> Program:
     """The program; where names are unknown and its cell is at fault, the cell's faults come first."""
     try:
         return load(path, cell)
     except ProgramError as error:
+        if isinstance(cell, Cell):
+            raise
         likely = Path(cell) if cell is not None else Path(path).with_suffix(".toml")
         if any(found.code == "IRL201" for found in error.diagnostics) and is_file(likely):
             load_cell(likely)

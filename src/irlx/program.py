@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path, PurePath
+from typing import TYPE_CHECKING
 
 from irlx.blocks import Origin
 from irlx.cell.find import find_cell, is_file
@@ -22,6 +23,9 @@ from irlx.language.modules import ImportedModule, ModuleProblem
 from irlx.language.source import decode_source
 from irlx.language.suppression import Ignore
 from irlx.language.tree.nodes import Name
+
+if TYPE_CHECKING:
+    from irlx.cell.cell import Cell
 
 PathLike = str | os.PathLike[str]
 
@@ -106,14 +110,27 @@ class Program:
         return _specification(self.tree)
 
 
-def load(path: PathLike, cell: PathLike | None = None) -> Program:
+def load(path: PathLike, cell: PathLike | Cell | None = None) -> Program:
     """Read and analyse a program file; the frames of its cell are names it may use.
 
     `cell` None: found as `cell_path` finds it. Raises ProgramError that holds all diagnostics; what is
     wrong with the cell is not told here.
     """
     file = Path(path)
-    content, files = read_file(file), _Beside(file)
+    return _loaded(file, read_file(file), cell)
+
+
+def load_text(text: str, path: PathLike, cell: PathLike | Cell | None = None) -> Program:
+    """The program of a text, as if it stood in a file at `path`, which need not be there.
+
+    Data lists, modules and the cell are looked for beside it; a Cell that has been loaded says its names
+    itself. Raises ProgramError as `load` does.
+    """
+    return _loaded(Path(path), text.encode("utf-8"), cell)
+
+
+def _loaded(file: Path, content: bytes, cell: PathLike | Cell | None) -> Program:
+    files = _Beside(file)
     analysis = _analysis(file, content, cell, files)
     if analysis.has_errors or not isinstance(analysis.tree, tree.Program):
         raise ProgramError(_why_no_program(analysis))
@@ -159,6 +176,15 @@ def analyse_file(
     None: those of the cell that a run would find. Raises ProgramError where the file cannot be read.
     """
     return analyse_with_program(path, cell, joints)[0]
+
+
+def analyse_text(text: str, path: PathLike, cell: PathLike | Cell | None = None) -> Analysis:
+    """Analysis, with lints, of a text as if it stood in a file at `path`, as `load_text` takes it."""
+    file = Path(path)
+    known: tuple[str, ...] | CellJoints = partial(_found_joints, file)
+    if not (cell is None or isinstance(cell, str | os.PathLike)):
+        known = cell.robot.joint_names
+    return _analysis(file, text.encode("utf-8"), cell, _Beside(file), known, lints=True)
 
 
 def analyse_with_program(
@@ -276,7 +302,7 @@ class _Beside:
 def _analysis(
     path: Path,
     content: bytes,
-    cell: PathLike | None,
+    cell: PathLike | Cell | None,
     files: _Beside,
     joints: tuple[str, ...] | CellJoints = (),
     *,
@@ -285,10 +311,18 @@ def _analysis(
     """Analysis of the bytes of a file. Raises ProgramError for bytes that are no text."""
 
     def cell_names(root: tree.Program | tree.Module) -> Mapping[str, bool] | None:
-        files.names = _found_names(path, root) if cell is None else frame_names(Path(cell))
+        if cell is None:
+            files.names = _found_names(path, root)
+        elif isinstance(cell, str | os.PathLike):
+            files.names = frame_names(Path(cell))
+        else:
+            files.names = {name: name in cell.link_frames for name in (*cell.frames, *cell.link_frames)}
         return files.names
 
     def obstacles(root: tree.Program | tree.Module) -> tuple[str, ...] | None:
+        if not (cell is None or isinstance(cell, str | os.PathLike)):
+            files.obstacles = cell.scene.names
+            return files.obstacles
         of_cell = _found_cell(path, root) if cell is None else Path(cell)
         # A cell that is no TOML has no names to miss: what is wrong with it is told when it is loaded.
         if of_cell is not None and cell_table(of_cell):

@@ -113,6 +113,7 @@ _WORDS = {
     "input": "the text for STANDARD_IN that Python gave",
     "files": "the folder of --files",
     "on_pause": "a function that answered each PAUSE",
+    "cell": "a cell that is no file as it stands",
 }
 
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from irlx.blocks import Block
 from irlx.diagnostics import Diagnostic, IrlxError, report
 from irlx.interpreter.channels.pieces import InputGiven
-from irlx.job import InputsGiven, PathLike, prepare
+from irlx.job import CellGiven, InputsGiven, PathLike, prepare
 from irlx.language.suppression import without_ignored
 from irlx.pacing.correction.corrector import Senses
 from irlx.pacing.correction.nearness import Nearness
@@ -51,7 +51,7 @@ Watcher = Callable[[Sample], Mapping[str, Sequence[float] | Array | None] | None
 
 def run(
     program: Program | PathLike,
-    cell: PathLike | None = None,
+    cell: CellGiven = None,
     tick_ms: float | None = None,
     progress: Progress | None = None,
     explain_tick: int | None = None,
@@ -66,9 +66,9 @@ def run(
 ) -> Run:
     """Interpret a program, move its robot, and return the joint stream.
 
-    `cell`: path of the cell file, by default found beside the program; `tick_ms` overrides the
-    cell's tick; `explain_tick` asks for `Run.explanation` of that tick; a move that limits make
-    more than `max_slow` times as long as programmed is an error, and so are more than `max_steps`
+    `cell`: path of the cell file, by default found beside the program, or a cell that has been loaded;
+    `tick_ms` overrides the cell's tick; `explain_tick` asks for `Run.explanation` of that tick; a move that
+    limits make more than `max_slow` times as long as programmed is an error, and so are more than `max_steps`
     statements (by default 10,000,000); `inputs` as `InputsGiven`, in place of the cell's; each PAUSE lasts
     `pause_s` s, rounded up to whole ticks. With `write_data`, values of data lists that the program has
     changed are written to their files after a complete run.

@@ -10,17 +10,30 @@ from irlx.cell.cell import Cell
 from irlx.cell.errors import CellError
 from irlx.cell.model import load_robot, with_packaged_defaults, without_absent_joints
 from irlx.cell.read import read_cell_file
+from irlx.cell.schema import CellFile, RobotSection
 from irlx.diagnostics import Place, report
 from irlx.diagnostics.near_files import near_files
 
 
 def load_cell(path: Path) -> Cell:
     """Cell of a file. Raises CellError with every fault; IRL001, IRL002, IRL007 where it cannot be read."""
-    content = read_cell_file(read_bytes(path), str(path))
+    return _built(read_cell_file(read_bytes(path), str(path)), str(path), path.parent)
+
+
+def own_cell(model: str) -> Cell:
+    """Cell with nothing in it but a robot, that of a name or of a URDF at a path, as it is by itself.
+
+    Raises CellError as `load_cell` does, IRL611 for a name that is not known.
+    """
+    file = f"{model} (its own cell)"
+    return _built(CellFile(robot=RobotSection(model=model)), file, Path())
+
+
+def _built(content: CellFile, file: str, folder: Path) -> Cell:
     section = with_packaged_defaults(content.robot)
-    robot = load_robot(section, str(path), path.parent, bound_links(content))
+    robot = load_robot(section, file, folder, bound_links(content))
     section = without_absent_joints(section, content.robot, robot)
-    return build_cell(content, section, robot, str(path))
+    return build_cell(content, section, robot, file)
 
 
 def read_bytes(path: Path) -> bytes:
