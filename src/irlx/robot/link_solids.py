@@ -20,14 +20,15 @@ def link_solids(links: Iterable[ET.Element]) -> dict[str, tuple[Solid, ...]]:
     found = {}
     for link in links:
         name = link.get("name", "")
-        solids = tuple(_solid(element, name) for element in link.findall("collision"))
+        solids = tuple(read_solid(element, name) for element in link.findall("collision"))
         if solids:
             found[name] = solids
     return found
 
 
-def _solid(element: ET.Element, link: str) -> Solid:
-    where = f"link '{link}', collision"
+def read_solid(element: ET.Element, link: str) -> Solid:
+    """Solid of a <collision> or a <visual> element of a link. Raises RobotModelError."""
+    where = f"link '{link}', {element.tag}"
     geometry = element.find("geometry")
     shapes = list(geometry) if geometry is not None else []
     if len(shapes) != 1:

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache, lru_cache
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from irlx.solids.shape import Mesh
 from irlx.solids.triangles import Triangles
+
+Read = TypeVar("Read")
 
 _TRIMESH = {"trimesh": "trimesh"}
 _READERS = {
@@ -55,15 +58,18 @@ def read_mesh(mesh: Mesh) -> Triangles:
     process while the file stays as it is. Raises MeshFileError: no such file, unreadable, empty, a
     format that is not known; MeshReaderMissing without the extra `meshes`, which binary STL does not need.
     """
-    path = Path(mesh.file)
-    ending = path.suffix[1:].lower()
-    if ending not in _READERS:
+    return _read(mesh, *state_of(Path(mesh.file)))
+
+
+def state_of(path: Path) -> tuple[int, int]:
+    """Time of change (ns) and size of a mesh file. Raises MeshFileError: not there, or no format known."""
+    if path.suffix[1:].lower() not in _READERS:
         raise MeshFileError(f"'{path.suffix}' is no format of meshes that irlx reads: {', '.join(_READERS)}")
     try:
         state = path.stat()
     except (OSError, ValueError) as cause:
         raise MeshFileError(_words(cause)) from cause
-    return _read(mesh, state.st_mtime_ns, state.st_size)
+    return state.st_mtime_ns, state.st_size
 
 
 def read_closed_mesh(mesh: Mesh) -> Triangles:
@@ -87,10 +93,7 @@ def read_closed_mesh(mesh: Mesh) -> Triangles:
 @lru_cache(maxsize=_KEPT)
 def _read(mesh: Mesh, modified: int, size: int) -> Triangles:
     """`read_mesh`; time of change (ns) and size tell a file that was written anew."""
-    vertices, faces = _content(Path(mesh.file))
-    if not np.all(np.abs(vertices) < _FARTHEST):
-        raise MeshFileError("it holds coordinates that are no lengths")
-    vertices, faces = _joined(vertices, faces)
+    vertices, faces = joined(*_content(Path(mesh.file)))
     if len(faces) == 0:
         raise MeshFileError("it holds no triangles")
     scale = np.array(mesh.scale)
@@ -145,7 +148,14 @@ def _content(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         with np.errstate(invalid="ignore"):
             vertices = corners.reshape(-1, 3).astype(float)
         return vertices, np.arange(len(vertices)).reshape(-1, 3)
-    loaded = _loaded(path)
+    if path.suffix.lower() == ".stl" and not content.lstrip().lower().startswith(b"solid"):
+        # Neither binary nor text; some versions of trimesh find nothing wrong with that.
+        raise MeshFileError("it is no whole STL file")
+    return arrays_of(read_with_trimesh(path, _as_one_mesh))
+
+
+def arrays_of(loaded: Any) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Vertices (V, 3) and faces (F, 3) of a mesh of trimesh. Raises MeshFileError."""
     vertices = np.array(loaded.vertices, dtype=float).reshape(-1, 3)
     faces = np.array(loaded.faces, dtype=np.int64).reshape(-1, 3)
     if len(faces) and not (faces.min() >= 0 and faces.max() < len(vertices)):
@@ -153,29 +163,39 @@ def _content(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     return vertices, faces
 
 
-def _loaded(path: Path) -> Any:
-    """What trimesh makes of a file, one mesh of all that it holds. Raises MeshFileError."""
+def _as_one_mesh(path: Path) -> Any:
+    """One mesh of all that a file holds, in m."""
+    import trimesh
+
+    loaded = trimesh.load_mesh(str(path), process=False)
+    return loaded.convert_units("meters") if path.suffix.lower() == ".dae" else loaded
+
+
+def read_with_trimesh(path: Path, reader: Callable[[Path], Read]) -> Read:
+    """What `reader` makes of a file with the library trimesh. Raises MeshFileError."""
     ending = path.suffix[1:].lower()
     for module, package in _READERS[ending].items():
         try:
             import_module(module)
         except ImportError as cause:
             raise MeshReaderMissing(f"the package {package} is not installed") from cause
-    import trimesh
-
     try:
-        loaded = trimesh.load_mesh(str(path), process=False)
-        return loaded.convert_units("meters") if ending == "dae" else loaded
+        return reader(path)
     except Exception as cause:
         # A broken file makes the readers of the formats fail in ways of their own: index, key, struct, XML.
         detail = "" if isinstance(cause, ImportError) else f" ({_words(cause)})"
         raise MeshFileError(f"it is no whole {ending.upper()} file{detail}") from cause
 
 
-def _joined(
+def joined(
     vertices: NDArray[np.float64], faces: NDArray[np.int64]
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """The mesh with one vertex at a place, only those that faces use, and without faces that have no area."""
+    """The mesh with one vertex at a place, only those that faces use, and without faces that have no area.
+
+    Raises MeshFileError for coordinates that are no lengths.
+    """
+    if not np.all(np.abs(vertices) < _FARTHEST):
+        raise MeshFileError("it holds coordinates that are no lengths")
     used = vertices[faces.ravel()]
     if not len(used):
         return vertices, faces

@@ -1,6 +1,6 @@
 """IRL7xx: joint streams and their verification."""
 
-from irlx.diagnostics.codes.code import Code, error, info
+from irlx.diagnostics.codes.code import Code, error, info, warning
 
 STREAM: tuple[Code, ...] = (
     error(
@@ -90,6 +90,11 @@ STREAM: tuple[Code, ...] = (
         "IRL719",
         "{format}: {what} are left out, {number} in this stream",
         "keep the stream that it was made from, which has them",
+    ),
+    warning(
+        "IRL721",
+        "link '{link}' is not drawn as its model has it: {cause}",
+        "pictures show its collision shapes, or nothing of it; what the robot does is not touched by that",
     ),
     error(
         "IRL725",
