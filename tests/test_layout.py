@@ -42,6 +42,7 @@ WIRING = {
     "registration",
     "conformance",
     "conversion",
+    "plotting",
 }
 """Modules that wire stages together: only the doors, the package itself and they import them."""
 ANYWHERE = {"_version", "promises"}

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from irlx.conversion import convert
     from irlx.diagnostics import Diagnostic, IrlxError
     from irlx.language.format import format_source
+    from irlx.plotting import plot
     from irlx.program import Program, ProgramError, load
     from irlx.registration import register
     from irlx.report.outcome import Outcome
@@ -54,6 +55,7 @@ _HOMES = {
     "format_source": "irlx.language.format",
     "load": "irlx.program",
     "load_ipython_extension": "irlx.notebook.magic",
+    "plot": "irlx.plotting",
     "record": "irlx.running",
     "register": "irlx.registration",
     "reproduce": "irlx.reproduction",
@@ -85,6 +87,7 @@ __all__ = [
     "convert",
     "format_source",
     "load",
+    "plot",
     "record",
     "register",
     "reproduce",

@@ -92,7 +92,7 @@ def verify(
     if strict is not None:
         reference = Reference(strict.robot, strict.limits, strict.start, strict.relations, strict.scene)
     elif header is not None:
-        reference = _looked_up(header, beside, of_program)
+        reference = looked_up(header, beside, of_program)
     compare = (
         None
         if text is None
@@ -116,7 +116,7 @@ def _cell_of(program: Program) -> Cell | None:
         return None
 
 
-def _looked_up(header: StreamHeader, beside: Path, of_program: Cell | None) -> Reference | None:
+def looked_up(header: StreamHeader, beside: Path, of_program: Cell | None) -> Reference | None:
     """What a stream is judged by where no cell is given, None where neither its cell nor its model is found.
 
     A cell of the right name may be anybody's: only one with the very robot of the stream will do, and its

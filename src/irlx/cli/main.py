@@ -12,11 +12,11 @@ import sys
 from collections.abc import Sequence
 
 from irlx._version import __version__
-from irlx.cli import blocks, check, conformance, convert, explain, fmt, new, robots, run, verify
+from irlx.cli import blocks, check, conformance, convert, explain, fmt, new, plot, robots, run, verify
 from irlx.cli.output import exit_code, print_diagnostics
 from irlx.diagnostics import IrlxError, report
 
-_COMMANDS = (run, check, fmt, blocks, verify, convert, robots, new, explain, conformance)
+_COMMANDS = (run, check, fmt, blocks, verify, plot, convert, robots, new, explain, conformance)
 _EXAMPLE = """\
 examples:
   irlx run programs/koch/square.irl

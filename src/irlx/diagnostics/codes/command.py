@@ -1,6 +1,6 @@
 """IRL0xx: the command line, files, and errors of irlx itself."""
 
-from irlx.diagnostics.codes.code import error
+from irlx.diagnostics.codes.code import error, warning
 
 COMMAND = (
     error("IRL001", "no such file: {path}{near}", "give the path of an existing file"),
@@ -16,6 +16,12 @@ COMMAND = (
         "the plugin {name} cannot be imported: {cause}",
         "name a module that Python finds, or a file that ends with .py",
     ),
+    error(
+        "IRL011",
+        "{first} and {second} cannot be drawn over each other: {cause}",
+        "compare streams of robots with the same joints",
+    ),
+    warning("IRL019", "{what} is left out: {cause}"),
     error("IRL010", "{command} needs {package}: pip install 'irlx[{extra}]'"),
     error(
         "IRL090",

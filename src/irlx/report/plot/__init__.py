@@ -1,0 +1,1 @@
+"""Curves of streams, drawn as figures and in a terminal."""

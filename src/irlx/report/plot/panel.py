@@ -1,0 +1,170 @@
+"""One diagram of a figure: curves over time, their limits, where these bind."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
+
+from irlx.report.plot.curves import Curves, Track
+from irlx.report.plot.quantity import Quantity
+
+Array = NDArray[np.float64]
+
+COLOURS, WIDTHS = ("#8a8a8a", "#14566e"), (2.0, 1.0)
+"""Of two streams: the first is the ground that the second is seen against. They differ in lightness, so that
+every eye and a print without colour tell them apart."""
+ONE, LIMIT, INK, MARGIN = "#14566e", "#a02040", "#222222", "#7a5200"
+ACTIVE, SLOW, GRID = "#f3d3da", "#f6e3b4", "#eceff3"
+_DASHED, _SHORT = (0, (6, 3)), (0, (3, 2))
+_REACH = 0.35
+"""How far a limit may lie outside of a curve and still be drawn, as a part of the curve's range."""
+
+
+def style_of(number: int, count: int) -> tuple[str, float]:
+    """Colour and width of the curves of one stream among `count`."""
+    return (ONE, 1.1) if count == 1 else (COLOURS[number], WIDTHS[number])
+
+
+def draw_joint(axes: Axes, all_curves: Sequence[Curves], quantity: Quantity, joint: int) -> None:
+    """Curves of one quantity of a joint, its limits in force, and where it is at them."""
+    count = len(all_curves)
+    # A difference belongs to the whole tick before its row: drawn as steps.
+    style = "default" if quantity is Quantity.POSITION else "steps-pre"
+    seen = []
+    for number, curves in enumerate(all_curves):
+        colour, width = style_of(number, count)
+        values = curves.values[quantity][:, joint]
+        seen.append(values)
+        axes.plot(
+            curves.t,
+            values,
+            color=colour,
+            linewidth=width,
+            drawstyle=style,
+            solid_joinstyle="round",
+            label=curves.name,
+            gid=f"curve {number}",
+            zorder=3.0 + 0.1 * number,
+        )
+        _mark_spans(axes, curves.spans(quantity, joint), number, count)
+    barred = count > 1 and any(curves.spans(quantity, joint) for curves in all_curves)
+    _set_range(axes, np.concatenate(seen), 0.3 if barred else 0.1)
+    _draw_limits(axes, all_curves, quantity, joint)
+
+
+def draw_track(axes: Axes, tracks: Sequence[Track | None], all_curves: Sequence[Curves]) -> None:
+    """Curves of the robot as a whole, from zero on, and what they are held against."""
+    count, highest = len(all_curves), 0.0
+    for number, (track, curves) in enumerate(zip(tracks, all_curves, strict=True)):
+        if track is None:
+            continue
+        colour, width = style_of(number, count)
+        style: Any = "steps-pre" if track.stepped else "default"
+        apart = track.apart
+        if np.isfinite(apart).any():
+            axes.plot(
+                track.t,
+                apart,
+                color=MARGIN if count == 1 else colour,
+                linewidth=0.9,
+                linestyle=_SHORT,
+                drawstyle=style,
+                gid=track.bound_name,
+                zorder=2.5,
+            )
+            highest = max(highest, _greatest(apart))
+        axes.plot(
+            track.t,
+            track.values,
+            color=colour,
+            linewidth=width,
+            drawstyle=style,
+            label=curves.name,
+            gid=f"curve {number}",
+            zorder=3.0 + 0.1 * number,
+        )
+        highest = max(highest, _greatest(track.values))
+        least = float(np.nanmin(track.values, initial=0.0))
+        axes.set_ylim(bottom=min(axes.get_ylim()[0], 1.08 * least) if least < 0.0 else 0.0)
+        if track.stepped:
+            for begin, end in curves.slowed if number == count - 1 else ():
+                axes.axvspan(begin, end, color=SLOW, linewidth=0.0, gid="slowed", zorder=0.5)
+    axes.set_ylim(top=1.12 * highest if highest > 0.0 else 1.0)
+
+
+def finish(axes: Axes, all_curves: Sequence[Curves], span: tuple[float, float], height: float) -> None:
+    """Marks of moves, grid and ticks, as many as a diagram of a `height` (inches) has room for."""
+    for mark in all_curves[-1].moves:
+        axes.axvline(mark.time, color="#555555", linewidth=0.6, linestyle=(0, (1, 2)), gid="move", zorder=1.5)
+    axes.set_xlim(*span)
+    axes.grid(True, color=GRID, linewidth=0.5)
+    axes.set_axisbelow(True)
+    axes.yaxis.set_major_locator(MaxNLocator(max(2, min(5, int(height / 0.24))), steps=[1, 2, 2.5, 5, 10]))
+    axes.xaxis.set_major_locator(MaxNLocator(7))
+
+
+def _greatest(values: Array) -> float:
+    finite = values[np.isfinite(values)]
+    return float(finite.max()) if finite.size else 0.0
+
+
+def _mark_spans(axes: Axes, spans: list[tuple[float, float]], number: int, count: int) -> None:
+    """Where a joint is at a limit: shaded, or of two streams a bar of its own for each at the upper edge."""
+    if count == 1:
+        for begin, end in spans:
+            axes.axvspan(begin, end, color=ACTIVE, linewidth=0.0, gid="active", zorder=0.5)
+        return
+    colour, _ = style_of(number, count)
+    top = 1.0 - 0.06 * number
+    for begin, end in spans:
+        axes.axvspan(begin, end, top - 0.05, top, color=colour, linewidth=0.0, gid="active bar", zorder=4.0)
+
+
+def _set_range(axes: Axes, values: Array, above: float) -> None:
+    """Range of a diagram, with a part of it left free `above`. Joints that stand still get one as wide as
+    their unit, not one of rounding."""
+    least, most = float(values.min()), float(values.max())
+    whole = most - least
+    axes.set_ylim(least - max(0.1 * whole, 0.5), most + max(above * whole, 0.5))
+
+
+def _draw_limits(axes: Axes, all_curves: Sequence[Curves], quantity: Quantity, joint: int) -> None:
+    """Limits in force, dashed. One far outside of the curves would flatten them: its value stands there."""
+    low, high = axes.get_ylim()
+    reach = _REACH * (high - low)
+    shown, edges, far = [low, high], [low, high], ["", ""]
+    lines: list[tuple[Array, Array, str]] = []
+    for number, curves in enumerate(all_curves):
+        times, *sides = curves.bounds[quantity].steps(joint)
+        for side, values in enumerate(sides):
+            near = (values >= low - reach) & (values <= high + reach)
+            if near.any():
+                drawn = np.where(near, values, np.nan)
+                colour = LIMIT if number == len(all_curves) - 1 else COLOURS[number]
+                known = any(_same_line((times, drawn), line[:2]) for line in lines)
+                lines += [] if known and number == 0 else [(times, drawn, colour)]
+                shown += [float(np.nanmin(drawn)), float(np.nanmax(drawn))]
+            elif np.isfinite(values).any():
+                edge = values[np.isfinite(values)]
+                far[side] = f"{edge.max() if side == 0 else edge.min():.4g}".replace("-", "\N{MINUS SIGN}")
+    for times, drawn, colour in lines:
+        axes.plot(times, drawn, color=colour, linewidth=0.9, linestyle=_DASHED, gid="limit", zorder=2.0)
+    room = 0.06 * (high - low)
+    edges = [min(low, min(shown) - room), max(high, max(shown) + room)]
+    axes.set_ylim(*edges)
+    for words, place, upright in ((far[0], 0.04, "bottom"), (far[1], 0.96, "top")):
+        if words:
+            arrow = "\N{DOWNWARDS ARROW}" if upright == "bottom" else "\N{UPWARDS ARROW}"
+            axes.text(
+                0.992, place, f"{arrow} {words}", transform=axes.transAxes, ha="right", va=upright,
+                fontsize=6.0, color=LIMIT, gid="far limit", zorder=1.2,
+            )  # fmt: skip
+
+
+def _same_line(one: tuple[Array, Array], other: tuple[Array, Array]) -> bool:
+    return all(np.array_equal(a, b, equal_nan=True) for a, b in zip(one, other, strict=True))
