@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -63,7 +64,8 @@ def plot(
 
     `joints` are names or numbers from 1, by default all; `show` any of 'position', 'speed', 'acceleration',
     'singular', 'clearance' and 'path-speed', by default all that are known; `first` and `last` bound the
-    time, s; `cell` names the cell file, looked for as `irlx.verify` does without it; `width` in mm.
+    time, s; `cell` names the cell file, looked for as `irlx.verify` does without it; `width` in mm. What is
+    left out because robot or obstacles are not known is told by a warning (IRL019).
     Raises IrlxError: IRL010 where matplotlib is not installed (extra `plot`), IRL006 for what is not there,
     IRL011 where the joints of the two differ; StreamError and CellError for files that cannot be used.
     """
@@ -72,6 +74,8 @@ def plot(
 
     sources = [run_or_path] if other is None else [run_or_path, other]
     found = plotted(sources, joints, show, (first, last), cell)
+    for note in found.notes:
+        warnings.warn(str(note), stacklevel=2)
     return draw_figure(found.curves, found.joints, width)
 
 

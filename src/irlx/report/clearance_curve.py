@@ -17,6 +17,9 @@ from irlx.verifier.outline import Outline
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
+_ROUNDING = 1e-9
+"""Part of an influence by which a pair must be nearer: some links stand at the same distance always."""
+
 _ALWAYS = ((0, int(np.iinfo(np.int64).max)),)
 
 
@@ -38,7 +41,8 @@ def clearances_over(
         here = np.flatnonzero(rows_in(spans, rows))
         for meeting in meetings(pair, places):
             found = capped_distances(meeting, here, np.full(len(here), influence))
-            nearer = (found < influence) & (found - pair.margin < room[here])
+            counts = found < influence * (1.0 - _ROUNDING)
+            nearer = counts & (found - pair.margin < room[here])
             which = here[nearer]
             least[which], nearest[which] = found[nearer], number
             room[which] = found[nearer] - pair.margin

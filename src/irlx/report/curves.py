@@ -62,7 +62,8 @@ def smallest_singular_values(robot: RobotDescription, outline: Outline, q: Array
     """Smallest singular value (K,) of the tool Jacobian in postures q (K, n) of the blocks (K,).
 
     The tool is the one in force there, seen from the frame in which the block leads it, and the rows are
-    those of the robot's task, lengths divided by its reach: `SmallestSingularValue`, without unit.
+    those of the robot's task, lengths divided by its reach: `SmallestSingularValue`, without unit. The start
+    counts as part of the first motion.
     """
     tools, frames = tools_of(outline.records), frames_of(outline.records, robot).of_block
     set_tools = [record.block for record in outline.records if record.block.id in set(tools.ids.tolist())]
@@ -80,6 +81,8 @@ def smallest_singular_values(robot: RobotDescription, outline: Outline, q: Array
             known[key] = SmallestSingularValue(kinematics.relative_to(frame) if frame else kinematics)
         return known[key]
 
+    motions = outline.ids[outline.ids > 0]
+    block = np.where(block == 0, motions[:1] if motions.size else 0, block)
     numbers = tools.numbers(block).tolist()
     pairs = zip(q, numbers, block.tolist(), strict=True)
     return np.array([measure(number, own).value(posture) for posture, number, own in pairs])

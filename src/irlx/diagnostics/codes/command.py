@@ -16,13 +16,13 @@ COMMAND = (
         "the plugin {name} cannot be imported: {cause}",
         "name a module that Python finds, or a file that ends with .py",
     ),
+    error("IRL010", "{command} needs {package}: pip install 'irlx[{extra}]'"),
     error(
         "IRL011",
         "{first} and {second} cannot be drawn over each other: {cause}",
         "compare streams of robots with the same joints",
     ),
     warning("IRL019", "{what} is left out: {cause}"),
-    error("IRL010", "{command} needs {package}: pip install 'irlx[{extra}]'"),
     error(
         "IRL090",
         "internal error: {cause}",

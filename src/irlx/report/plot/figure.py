@@ -55,6 +55,8 @@ _HEAD, _FOOT, _RIGHT, _GAP, _AXIS = 0.92, 0.44, 0.14, 0.13, 0.38
 """Room above, below and to the right of the diagrams, between rows, and for a time axis between; inches."""
 _LETTER = 0.075
 """Width of a letter, inches."""
+_TITLE = 0.18
+"""Of the room above, what titles of columns take, inches."""
 _JOINTS_HEIGHT, _TALLEST, _LOWEST = 9.0, 1.3, 0.56
 _TRACK, _LOW_TRACK = 1.0, 0.72
 """Height of all rows of joints, most and least of one of them, that of a wide row; inches."""
@@ -77,9 +79,14 @@ class _Page:
         return _AXIS if self.joints and self.tracks else 0.0
 
     @property
+    def head(self) -> float:
+        """Height of what stands above the diagrams; those of joints have titles."""
+        return _HEAD if self.joints else _HEAD - _TITLE
+
+    @property
     def height(self) -> float:
         """Height of the page."""
-        return _HEAD + _FOOT + self.joints_height + self.apart + _stacked(self.tracks, self.track_height)
+        return self.head + _FOOT + self.joints_height + self.apart + _stacked(self.tracks, self.track_height)
 
     @property
     def joints_height(self) -> float:
@@ -172,16 +179,16 @@ def _page(labels: Sequence[str], rows: int, tracks: int, width: float) -> _Page:
 def _grids(figure: Figure, page: _Page, columns: int) -> tuple[GridSpec, GridSpec]:
     """Places of the diagrams of joints, and of the wide ones below them."""
     height = page.height
-    below = 1.0 - (_HEAD + page.joints_height) / height
+    below = 1.0 - (page.head + page.joints_height) / height
     sides = {"left": page.left / page.width, "right": 1.0 - _RIGHT / page.width}
     upper = figure.add_gridspec(
         max(page.joints, 1),
         max(columns, 1),
         **sides,
-        top=1.0 - _HEAD / height,
+        top=1.0 - page.head / height,
         bottom=below if page.joints else 0.5,
         hspace=_GAP / page.joint_height,
-        wspace=0.17,
+        wspace=0.2,
     )
     lower = figure.add_gridspec(
         max(page.tracks, 1),

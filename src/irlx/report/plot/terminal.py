@@ -200,12 +200,16 @@ def _columns(
         part_t, part = t[begin : end + 1], values[begin : end + 1]
         inside = grid[(grid >= part_t[0]) & (grid <= part_t[-1])]
         at = np.concatenate([part_t, inside])
-        height = np.concatenate([part, np.interp(inside, part_t, part)])
+        order = np.argsort(at, kind="stable")
+        at, height = at[order], np.concatenate([part, np.interp(inside, part_t, part)])[order]
         column = np.rint((at - times[0]) / (times[1] - times[0]) * (dots[0] - 1)).astype(int)
         dot = np.rint((height - limits[0]) / (limits[1] - limits[0]) * (dots[1] - 1))
+        before: float | None = None
         for number in np.unique(column).tolist():
             here = dot[column == number]
-            least, most = int(here.min()), int(here.max())
+            # From where the column before was left: a step is a line, too.
+            joined = here if before is None else np.append(here, before + np.sign(here[0] - before))
+            least, most, before = int(joined.min()), int(joined.max()), float(here[-1])
             if most >= 0 and least < dots[1]:
                 yield number, max(least, 0), min(most, dots[1] - 1)
 
