@@ -148,7 +148,7 @@ def test_of_many_joints_the_busiest(inside, folder, run):
         (["a.irdata", "--joints", "0"], "IRL006: --joints 0"),
         (["a.irdata", "--show", "sped"], "IRL006: --show sped: not one of position, speed,"),
         (["a.irdata", "--show", ""], "IRL006: --show ''"),
-        (["a.irdata", "--from", "9"], "--from 9: a.irdata has no sample from there to the end; it lasts 3.22 s"),
+        (["a.irdata", "--from", "9"], "--from 9: a.irdata has no sample from there on; it lasts 3.22 s"),
         (["a.irdata", "--from", "2", "--to", "1"], "--to 1: the end must lie behind the beginning, 2 s"),
         (["a.irdata", "--width", "9"], "IRL006: --width 9: needs 40 to 1000 columns"),
         (["a.irdata", "--width", "nan"], "IRL006: --width nan"),
