@@ -72,7 +72,7 @@ def test_the_unpacked_wheel_runs(wheel, tmp_path):
     )
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith(str(package))
-    assert "square.irl, complete: 5 moves" in done.stdout
+    assert "square.irl: complete, verified, " in done.stdout
     assert "checks passed" in done.stdout
     done = subprocess.run(
         [*call, "explain", "irl203"], cwd=work, env=environment, capture_output=True, text=True, check=False

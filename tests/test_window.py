@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import irlx
+from irlx.report.terminal import summary_text
 from nearness import least, nearest
 
 pytestmark = pytest.mark.req("TRF-13")
@@ -91,3 +92,15 @@ def test_both_take_the_same_time_and_the_elbow_goes_aside() -> None:
     np.testing.assert_array_equal(clear.t, plain.t)
     np.testing.assert_allclose(clear.tool[:, :3], plain.tool[:, :3], atol=1e-9)
     assert np.max(np.abs(clear.q - plain.q)) > np.radians(20.0)
+
+
+@pytest.mark.req("REP-02")
+def test_the_summary_shown_in_the_reference() -> None:
+    page = (FOLDER.parents[1] / "docs" / "reference" / "interface.md").read_text(encoding="utf-8")
+    shown = page.split("$ irlx run programs/window/window.irl\n")[1].split("```")[0].splitlines()
+    told = summary_text(run_of("window").summary, True).splitlines()
+    figures = "path error"
+    assert [line for line in shown[:-1] if figures not in line] == [
+        line for line in told if figures not in line
+    ]
+    assert shown[-1].split()[0] == "written"

@@ -67,7 +67,7 @@ def test_program_text_to_verified_stream(command, folder, names):
     )
     done = command("run", "p.irl", "-o", "p.irdata", "-o", "p.npz")
     assert done.returncode == 0, done.stderr
-    assert done.stdout.count("verified") == 2
+    assert done.stdout.count(" checks passed") == 2
     assert {"p.irdata", "p.npz"} <= set(names(folder))
     checked = command("verify", "p.irdata", "--json")
     assert checked.returncode == 0, checked.stdout

@@ -20,7 +20,7 @@ def test_run_twice_gives_the_same_bytes(command, inside, folder, names):
     outputs = ["-o", "a.irdata", "-o", "a.npz", "-o", "a.csv"]
     done = command("run", "p.irl", *outputs)
     assert (done.returncode, done.stderr) == (0, "")
-    assert "p.irl, complete: 2 moves" in done.stdout
+    assert "p.irl: complete, verified, " in done.stdout
     written = [line.split()[1] for line in done.stdout.splitlines() if line.startswith("written")]
     assert written == outputs[1::2]
     assert done.stdout.count(" checks passed") == 3

@@ -24,9 +24,9 @@ def test_a_run_writes_and_verifies_both(inside, folder, names):
         1::2
     ]
     assert names(folder) == ["a.irdata", "a.parquet", "a.rosbag", "p.irl", "p.toml"]
-    passed = {line.split()[1]: line.split()[2] for line in done.stdout.splitlines() if "passed" in line}
+    passed = {line.split()[1]: line.split()[4] for line in done.stdout.splitlines() if "passed" in line}
     # The others state rates, which is one check more.
-    assert int(passed["a.parquet:"]) == int(passed["a.rosbag:"]) == int(passed["a.irdata:"]) + 1
+    assert int(passed["a.parquet"]) == int(passed["a.rosbag"]) == int(passed["a.irdata"]) + 1
     first = content(folder)
     assert inside("run", "p.irl", *OUTPUTS).returncode == 0
     assert content(folder) == first

@@ -56,8 +56,8 @@ def test_a_log(place, inside, folder):
     place(LOGGING)
     done = inside("run", "p.irl")
     assert done.returncode == 0
-    assert done.stdout.startswith("begun\ndone\nprogram     p.irl, complete: 2 moves")
-    assert done.stdout.endswith("p.irdata: 24 checks passed\n")
+    assert done.stdout.startswith("begun\ndone\np.irl: complete, verified, ")
+    assert done.stdout.endswith(" samples, 24 checks passed\n")
     assert done.stderr == ""
     assert (folder / "log.txt").read_text() == "  440.00\n  200.00\n"
 

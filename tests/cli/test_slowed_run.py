@@ -112,11 +112,13 @@ def test_any_first_part_of_the_stream_keeps_its_bounds(run, place, share):
 def test_the_terminal_tells_it(place, capsys):
     assert main(["run", "p.irl", "-o", "out.npz"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert any(line.startswith("planned     ") and "of 4 moves as a whole" in line for line in lines)
-    slowed = [line for line in lines if line.startswith("slowed      ")]
-    assert "the path is kept; " in slowed[0]
-    assert "s longer than programmed" in slowed[0]
-    assert any("line 5, " in line and " of 1000 mm/s at " in line for line in slowed[1:])
+    assert lines[0].startswith("p.irl: complete, verified, ")
+    assert ", slowed by " in lines[0]
+    assert any(line.startswith("moves       4 (") and "planned as a whole" in line for line in lines)
+    (first,) = [number for number, line in enumerate(lines) if line.startswith("slowed      ")]
+    assert "s longer than programmed at " in lines[first]
+    places = list(itertools.takewhile(lambda line: line.startswith("            line "), lines[first + 1 :]))
+    assert any(line.startswith("            line 5  ") and " of 1000 mm/s  " in line for line in places)
 
 
 def test_json_has_the_events(place, capsys):

@@ -60,8 +60,8 @@ def test_a_program_runs_and_its_run_is_the_result_and_a_variable(shell, cell):
 def test_a_run_is_shown_as_its_summary(shell, cell):
     run, *_ = cell(f"{ARM} --name down\n{GOOD}")
     text = shell.display_formatter.format(run)[0]["text/plain"]
-    assert text.startswith("program     notebook.irl, complete: 1 moves")
-    assert repr(run) == f"<Run of notebook.irl: complete, 1 moves, {len(run.t)} samples, {run.t[-1]:.6g} s>"
+    assert text.startswith("notebook.irl: complete, ")
+    assert repr(run).startswith(f"<Run of notebook.irl: complete, {run.t[-1]:.6g} s, ")
 
 
 def test_a_mistake_is_shown_with_line_as_the_notebook_counts_and_caret(cell):

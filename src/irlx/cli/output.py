@@ -5,12 +5,19 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, TextIO
 
 from irlx.diagnostics import Diagnostic
 from irlx.diagnostics.text import render_text
 
+if TYPE_CHECKING:
+    from rich.text import Text
+
+    from irlx.report.lines import Line
+
 _COLOURS = {"error": "\x1b[1;31m", "warning": "\x1b[1;33m", "info": "\x1b[1;36m"}
 _PLAIN = "\x1b[0m"
+_MARKS = {True: "\N{CHECK MARK} ", False: "\N{BALLOT X} "}
 _USAGE = frozenset({"IRL707", "IRL720"})
 """Codes beyond IRL0xx and IRL6xx that say that a file was wrongly named, or a package is missing."""
 
@@ -30,6 +37,40 @@ def print_diagnostics(diagnostics: Iterable[Diagnostic]) -> None:
             words = f"{diagnostic.severity.value} {diagnostic.code}"
             text = text.replace(words, f"{_COLOURS[diagnostic.severity.value]}{words}{_PLAIN}", 1)
         print(encodable(text, sys.stderr), file=sys.stderr)
+
+
+def print_lines(lines: Sequence[Line], stream: TextIO | None = None) -> None:
+    """Print lines of a report on a stream, by default stdout; on a terminal with colour and marks."""
+    from irlx.report.lines import plain_text
+
+    to = sys.stdout if stream is None else stream
+    if not lines:
+        return
+    if not coloured(to):
+        print(encodable(plain_text(lines), to), file=to)
+        return
+    # Imported here: what reads a pipe wants the text as it is, at once.
+    from rich.console import Console
+
+    console = Console(file=to, highlight=False)
+    for line in lines:
+        console.print(_styled(line, to), soft_wrap=True)
+
+
+def _styled(line: Line, stream: TextIO) -> Text:
+    """A line for a terminal: labels step back, the verdict has a mark and its colour."""
+    from rich.text import Text
+
+    from irlx.report.lines import LABEL, Tone
+
+    colour = {Tone.GOOD: "green", Tone.BAD: "red", Tone.CARE: "yellow", Tone.FIGURE: ""}[line.tone]
+    words = encodable(line.words, stream)
+    if line.label is None:
+        mark = _MARKS[line.tone is Tone.GOOD]
+        # A mark that the terminal has no character for is left out.
+        mark = mark if encodable(mark, stream) == mark else ""
+        return Text.assemble((f"{mark}{words}", f"bold {colour}"))
+    return Text.assemble((f"{line.label:<{LABEL}}", colour or "dim"), words)
 
 
 def encodable(text: str, stream: object) -> str:

@@ -86,7 +86,7 @@ def add_parser(commands: Any) -> None:
         "where these are not beside it",
     )
     parser.add_argument("--json", action="store_true", help="print the summary as JSON")
-    parser.add_argument("--quiet", action="store_true", help="no progress, no summary")
+    parser.add_argument("--quiet", action="store_true", help="nothing but findings and failures")
     parser.add_argument("--no-verify", action="store_true", help="do not check the written files")
     parser.set_defaults(command=command, refuse=parser.error)
 
@@ -117,14 +117,14 @@ def command(options: argparse.Namespace) -> int:
         print_diagnostics(error.diagnostics)
         if not options.json:
             _print_tick(error.run, options)
-        _tell_partial(error.run, outputs, options)
+        _tell_partial(error.run, outputs, _why(error.diagnostics[0]), options)
         return exit_code(error.diagnostics)
     except RunInterrupted as interrupt:
         text.end_line()
         print("irlx: interrupted", file=sys.stderr)
-        _tell_partial(interrupt.run, outputs, options)
+        _tell_partial(interrupt.run, outputs, "interrupted", options)
         return 130
-    if not options.quiet:
+    if not options.quiet or run.diagnostics:
         text.end_line()
         print_diagnostics(run.diagnostics)
     reports = {} if options.no_verify else {str(path): _verified(path, job) for path in outputs}
@@ -225,10 +225,19 @@ def _written(outputs: list[Path]) -> tuple[Path, ...]:
     return (*outputs, *map(partial_name, outputs))
 
 
-def _tell_partial(run: Outcome, outputs: list[Path], options: argparse.Namespace) -> None:
-    """Say where what was executed is: the asked names only ever hold complete streams."""
-    from irlx.cli.output import encodable
+def _why(error: Diagnostic) -> str:
+    """What ended a run, in short: its message has been printed."""
+    line = error.place.line if error.place is not None else None
+    return error.code if line is None else f"{error.code} at line {line}"
 
+
+def _tell_partial(run: Outcome, outputs: list[Path], why: str, options: argparse.Namespace) -> None:
+    """Say how far it came and where that is: the asked names only ever hold complete streams."""
+    from irlx.cli.output import encodable, print_lines
+    from irlx.report.terminal import stop_line
+
+    if not options.quiet:
+        print_lines([stop_line(run.summary, why)], sys.stderr)
     for path in outputs:
         if path.exists():
             print(
@@ -282,8 +291,8 @@ def _print_summary(
     broken: list[Diagnostic],
     options: argparse.Namespace,
 ) -> None:
-    from irlx.cli.output import encodable
-    from irlx.report.terminal import summary_text, verification_line
+    from irlx.cli.output import print_lines
+    from irlx.report.terminal import failed_lines, file_lines, summary_lines
 
     if options.json:
         plain = {
@@ -297,11 +306,9 @@ def _print_summary(
         print(json.dumps(plain, indent=2))
         return
     _print_tick(run, options)
-    if not options.quiet:
-        words = summary_text(run.summary, run.header.joint_units, run.joint_names)
-        print(encodable(words, sys.stdout))
-        for path in outputs:
-            print(encodable(f"{'written':<12}{path}", sys.stdout))
-    for name, report in reports.items():
-        if not options.quiet or not report.passed:
-            print(encodable(verification_line(name, report), sys.stdout))
+    if options.quiet:
+        print_lines(failed_lines(reports))
+        return
+    verified = None if options.no_verify else not broken
+    files = file_lines(run.summary, [str(path) for path in outputs], reports)
+    print_lines([*summary_lines(run.summary, verified), *files])

@@ -25,7 +25,7 @@ class SmallestClearance:
     tick: int
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Clearances:
     """What came nearest in each of N samples: index `pair` (N,) into `pairs`, and its `distance` (N,) m.
 
@@ -37,6 +37,11 @@ class Clearances:
     distance: Array
     pairs: tuple[tuple[str, str], ...]
     margin: Array
+
+    def __repr__(self) -> str:
+        near = self.smallest
+        words = "nothing was near" if near is None else f"{near.link} and {near.other} {near.distance:.6g} m"
+        return f"<Clearances of {len(self.pair)} samples: {words}>"
 
     @property
     def smallest(self) -> SmallestClearance | None:

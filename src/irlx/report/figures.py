@@ -76,6 +76,8 @@ class Figures:
             iterations_per_tick=self._iterations / max(self._rows - 1, 1),
             returns=self._returns.found,
             clearance=self._clearance,
+            joint_names=header.joint_names,
+            joint_units=header.joint_units,
         )
 
     @property

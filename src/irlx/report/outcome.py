@@ -12,9 +12,9 @@ from irlx.report.summary import Summary
 from irlx.streams.joint_stream import StreamHeader
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class Outcome:
-    """Header of its stream, events, summary and warnings of one execution.
+    """Header of its stream, events, summary and warnings of one execution; `print` shows its summary.
 
     `explanation` is that of the tick asked for with `explain_tick`, None where no motion has it; `output` is
     what the program wrote to STANDARD_OUT; `files` what was written while it ran.
@@ -27,6 +27,16 @@ class Outcome:
     explanation: TickExplanation | None = None
     output: str = ""
     files: tuple[Path, ...] = ()
+
+    def __str__(self) -> str:
+        return str(self.summary)
+
+    def __repr__(self) -> str:
+        # Imported here: few ask.
+        from irlx.report.terminal import headline
+
+        size = f"{self.summary.samples} samples of {len(self.joint_names)} joints"
+        return f"<{type(self).__name__} of {headline(self.summary).words}; {size}>"
 
     @property
     def joint_names(self) -> tuple[str, ...]:

@@ -13,7 +13,6 @@ from irlx.diagnostics import Diagnostic, IrlxError
 from irlx.report.clearances import Clearances, clearances
 from irlx.report.outcome import Outcome
 from irlx.report.signals import Signal, signals_of
-from irlx.report.terminal import summary_text
 from irlx.streams.formats import write_stream
 from irlx.streams.joint_stream import JointStream
 
@@ -68,16 +67,9 @@ class Run(Outcome):
         """Outputs set and inputs read, in the order of time."""
         return signals_of(self.stream.records, self.stream.dt)
 
-    def __repr__(self) -> str:
-        found = self.summary
-        state = "complete" if found.complete else "incomplete"
-        counts = f"{found.moves} moves, {found.samples} samples, {found.duration:.6g} s"
-        return f"<Run of {found.program}: {state}, {counts}>"
-
     def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
         """What IPython shows where it shows text: the summary."""
-        words = summary_text(self.summary, self.header.joint_units, self.joint_names)
-        printer.text(repr(self) if cycle else words)
+        printer.text(repr(self) if cycle else str(self))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the stream in the format of the ending: .irdata, .npz, .jsonl, .csv, .parquet, .rosbag.

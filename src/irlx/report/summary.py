@@ -36,9 +36,9 @@ class Closure:
     difference: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Summary:
-    """Figures of a run: durations in s, path errors in m and rad.
+    """Figures of a run: durations in s, path errors in m and rad; `print(summary)` shows them to people.
 
     `slowed` tells where the tool ran slower than programmed, `planned` how many moves were planned as a
     whole because ordinary ticks would have broken a bound (their postures differ from the ordinary ones
@@ -46,7 +46,7 @@ class Summary:
     came nearest to its bound (for positions: the bound on that side of the middle of its range).
     `closure` is None where the tool does not end where it began; `returns` are the moves that ended at the
     tool pose of a CYCLICSTART; `clearance` is the place with the least room above a margin, None where
-    nothing that was kept clear came near.
+    nothing that was kept clear came near. `joint_units` are rad or m.
     """
 
     program: str
@@ -64,10 +64,24 @@ class Summary:
     iterations_per_tick: float
     returns: tuple[Return, ...] = ()
     clearance: SmallestClearance | None = None
+    joint_names: tuple[str, ...] = ()
+    joint_units: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        # Imported here: that module is about this one.
+        from irlx.report.terminal import summary_text
+
+        return summary_text(self)
+
+    def __repr__(self) -> str:
+        from irlx.report.terminal import headline
+
+        return f"<Summary of {headline(self).words}>"
 
     def to_plain(self) -> dict[str, object]:
-        """The summary as JSON-able data."""
+        """The summary as JSON-able data; names and units of joints stand in the header of the stream."""
         plain = asdict(self)
+        del plain["joint_names"], plain["joint_units"]
         plain["active"] = [event.to_plain() for event in self.active]
         plain["slowed"] = [event.to_plain() for event in self.slowed]
         plain["returns"] = [found.to_plain() for found in self.returns]

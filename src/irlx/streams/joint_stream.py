@@ -85,7 +85,7 @@ class BlockRecord:
     block: Block
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class JointStream:
     """N emitted samples of n joints, the blocks behind them, and where they come from.
 
@@ -114,6 +114,10 @@ class JointStream:
                 raise ValueError(
                     f"{name} needs shape {shape} and {kind.__name__}, found {array.shape} {array.dtype}"
                 )
+
+    def __repr__(self) -> str:
+        size = f"{len(self.ticks)} samples of {self.header.joints} joints"
+        return f"<JointStream of {self.header.program_name}: {size}{'' if self.complete else ', INCOMPLETE'}>"
 
     @property
     def dt(self) -> float:
