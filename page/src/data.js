@@ -111,7 +111,9 @@ function shortenNames(joints) {
 function sharedBeginning(names) {
   let end = 0;
   while (names.every((name) => end < name.length && name[end] === names[0][end])) end += 1;
-  // A beginning ends where a word does, so that "left_hand" and "left_head" lose "left_" only.
-  const word = names[0].slice(0, end).match(/^.*[^A-Za-z0-9]|^[A-Za-z]+$/);
+  const shared = names[0].slice(0, end);
+  // A beginning ends where a word does: "left_hand" and "left_head" lose "left_" only, "A1" and "A2" the letter.
+  if (/[A-Za-z]$/.test(shared) && names.every((name) => /^\d+$/.test(name.slice(end)))) return shared;
+  const word = shared.match(/^.*[^A-Za-z0-9]/);
   return word ? word[0] : '';
 }

@@ -82,10 +82,10 @@ export class Plot {
       font: '11px system-ui, sans-serif',
       values: (_, ticks) => ticks.map((tick) => String(+tick.toPrecision(8)).replace('-', '\u2212')),
     };
-    const y = { ...axis, scale: 'y', size: LEFT, gap: 4, space: 26 };
+    const y = { ...axis, scale: 'y', size: LEFT, gap: 4, space: 18 };
     // Where one scale serves all curves the other one keeps its room, so that plots stay below each other.
     const values = (u, ticks) => (spec.single() ? ticks.map(() => '') : axis.values(u, ticks));
-    const second = { ...axis, values, scale: 'y2', side: 1, size: this.right, gap: 4, space: 26, grid: { show: false } };
+    const second = { ...axis, values, scale: 'y2', side: 1, size: this.right, gap: 4, space: 18, grid: { show: false } };
     return {
       width,
       height,
@@ -119,6 +119,7 @@ export class Plot {
       dash: series.dash,
       points: { show: (u) => u.data[0].length < 2 },
       spanGaps: false,
+      pxAlign: 0,
     };
   }
 

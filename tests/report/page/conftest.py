@@ -1,0 +1,122 @@
+"""A browser for the replay page."""
+
+import base64
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+ARGUMENTS = (
+    "--no-sandbox",
+    "--disable-gpu",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--no-first-run",
+)
+
+
+@pytest.fixture(scope="session")
+def browser():
+    """Chromium of the machine, which draws WebGL by software."""
+    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
+    if chromium is None:
+        pytest.skip("chromium is not installed")
+    api = pytest.importorskip("playwright.sync_api", reason="playwright: pip install irlx[browser]")
+    with api.sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium, args=list(ARGUMENTS))
+        yield browser
+        browser.close()
+
+
+class Opened:
+    """A page that has drawn itself, and what it has asked for and said on the way."""
+
+    def __init__(self, page):
+        self.page = page
+        self.requests: list[str] = []
+        self.complaints: list[str] = []
+        page.on("request", lambda request: self.requests.append(request.url))
+        page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        page.on("console", self._hear)
+
+    def _hear(self, message):
+        # The driver, not the page, warns that pictures are read back from the (software) graphics card.
+        if message.type in ("error", "warning") and "GPU stall" not in message.text:
+            self.complaints.append(message.text)
+
+    def run(self, script, *arguments):
+        """Value of a script in the page."""
+        return self.page.evaluate(script, *arguments)
+
+    def seek(self, frame):
+        """Move the slider, as a person does, and wait until the scene is drawn."""
+        self.run(
+            """frame => {
+                const slider = document.getElementById('slider');
+                slider.value = String(frame);
+                slider.dispatchEvent(new Event('input', { bubbles: true }));
+            }""",
+            frame,
+        )
+        self.settle()
+
+    def settle(self):
+        """Wait until what has been asked for is drawn."""
+        self.run("() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+
+    def colours(self, selector):
+        """How many different colours a part of the page has, and its mean colour, of a picture of it."""
+        picture = self.page.locator(selector).first.screenshot()
+        return self.run(STATISTICS, base64.b64encode(picture).decode("ascii"))
+
+
+STATISTICS = """async coded => {
+    const image = new Image();
+    image.src = 'data:image/png;base64,' + coded;
+    await image.decode();
+    const canvas = document.createElement('canvas');
+    [canvas.width, canvas.height] = [image.width, image.height];
+    const context = canvas.getContext('2d');
+    context.drawImage(image, 0, 0);
+    const { data } = context.getImageData(0, 0, canvas.width, canvas.height);
+    const [seen, sum] = [new Set(), [0, 0, 0]];
+    for (let k = 0; k < data.length; k += 4) {
+        seen.add((data[k] << 16) | (data[k + 1] << 8) | data[k + 2]);
+        for (let c = 0; c < 3; c += 1) sum[c] += data[k + c];
+    }
+    let hash = 0;
+    for (let k = 0; k < data.length; k += 1) hash = (Math.imul(hash, 31) + data[k]) | 0;
+    return { different: seen.size, mean: sum.map(value => (4 * value) / data.length), hash };
+}"""
+
+
+@pytest.fixture(scope="session")
+def open_page(browser):
+    """`open_page(path, width=, height=, scheme=, still=, before=)`: the page of a file, ready, paused."""
+
+    @contextmanager
+    def opened(
+        path: Path, width=1000, height=620, scheme="light", still=True, before=None, where="#t=0"
+    ) -> Iterator[Opened]:
+        context = browser.new_context(
+            viewport={"width": width, "height": height},
+            color_scheme=scheme,
+            reduced_motion="reduce" if still else "no-preference",
+        )
+        page = context.new_page()
+        if before is not None:
+            page.add_init_script(before)
+        shown = Opened(page)
+        page.goto(path.as_uri() + where)
+        page.evaluate("() => window.irlx.ready.then(() => true)")
+        shown.settle()
+        yield shown
+        context.close()
+        assert shown.complaints == []
+
+    return opened
