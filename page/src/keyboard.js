@@ -25,10 +25,16 @@ export function connectKeyboard({ player, theme, fit, joints, help }) {
     event.preventDefault();
     action(event);
   });
+  // Who presses buttons with the mouse means the replay with the space bar, not the button again.
+  document.addEventListener('click', (event) => {
+    if (event.detail > 0) event.target.closest('button')?.blur();
+  });
 }
 
 /** Whether a key means something to the element that has the focus. */
 function means(target, key) {
+  // The focus leaves a dialog a moment after it has closed.
+  if (target.closest('dialog:not([open])')) return false;
   if (target.matches('select, input:not([type=range]), textarea')) return true;
   if (target.matches('[role=tab]')) return ['ArrowLeft', 'ArrowRight', 'Home', 'End', ' '].includes(key);
   return key === ' ' && target.matches('button, summary');
