@@ -21,7 +21,8 @@ export class Run {
     this.duration = this.count ? this.times[this.count - 1] : 0;
     this.joints = data.joints.map((joint, index) => ({ ...joint, index, ...shownUnit(joint.unit) }));
     shortenNames(this.joints);
-    this.blocks = data.blocks.map((block) => ({ ...block, frame: this.frameOfTick(block.tick) }));
+    this.programLines = data.program.text?.split('\n') ?? [];
+    this.blocks = data.blocks.map((block) => this.#begun(block));
     this.events = data.events
       .map((event) => this.#placed(event))
       .sort((a, b) => a.first - b.first || a.last - b.last);
@@ -71,9 +72,25 @@ export class Run {
     return found;
   }
 
+  /** The block in execution in a frame, undefined before the first. */
+  blockAt(frame) {
+    return this.blocks.filter((block) => block.frame <= frame).pop();
+  }
+
+  /** What a block does, in words of the program where they are known. */
+  wordsOf(block) {
+    return this.programLines[block.line - 1]?.replace(/\{[^}]*\}?|\(\*.*?(\*\)|$)/g, '').trim() || block.text;
+  }
+
   /** Events that go on in a frame. */
   eventsAt(frame) {
     return this.events.filter((event) => event.frame <= frame && frame <= event.lastFrame);
+  }
+
+  /** A block with the time at which it begins, and the first frame that it has moved. */
+  #begun(block) {
+    const line = block.file ? 0 : block.line;
+    return { ...block, line, from: block.tick * this.data.tick_s, frame: this.frameOfTick(block.tick + 1) };
   }
 
   #placed(event) {
@@ -81,6 +98,7 @@ export class Run {
     return {
       ...event,
       frame,
+      line: event.line ?? (this.data.frames.line[frame] || null),
       lastFrame: Math.max(frame, this.frameOfTick(event.last)),
       from: event.first * this.data.tick_s,
       to: event.last * this.data.tick_s,

@@ -75,7 +75,8 @@ function makeStage(run, kinematics, theme) {
 
 function fillHeader(run) {
   const { data } = run;
-  const moves = data.blocks.length === 1 ? '1 move' : `${data.blocks.length} moves`;
+  const count = data.summary.plain?.moves;
+  const moves = count === undefined ? null : `${count} ${count === 1 ? 'move' : 'moves'}`;
   byId('title').textContent = data.title;
   byId('facts').replaceChildren(
     ...[data.robot.name, data.cell?.name, moves].filter(Boolean).map((fact) => element('span', {}, fact)),

@@ -11,14 +11,14 @@ export function connectStatus(host, run, player) {
   player.onChange(() => {
     const { frame } = player;
     const number = run.data.frames.line[frame];
-    const block = run.blocks.filter((candidate) => candidate.frame <= frame).pop();
+    const block = run.blockAt(frame);
     const events = run.eventsAt(frame).filter((event) => ['limit', 'slowed', 'wait', 'stop'].includes(event.kind));
     const key = `${number} ${block?.id} ${events.map((event) => event.index).join(' ')}`;
     if (key === shown) return;
     shown = key;
     line.replaceChildren(
       ...(number ? [element('b', {}, `line ${number}`), ' '] : []),
-      ...(block && number ? [element('code', {}, block.text)] : []),
+      ...(block && number ? [element('code', {}, run.wordsOf(block))] : []),
     );
     active.replaceChildren(
       ...events.map((event) => element('span', { class: 'pill', style: `--mark: var(--${kindOf(event).colour})` }, event.label)),

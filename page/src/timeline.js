@@ -46,15 +46,19 @@ export class Timeline {
   }
 
   #drawMoves(context, width) {
-    const { blocks, times, duration } = this.run;
+    const { blocks, duration } = this.run;
+    let shade = 0;
     const colours = ['strip-a', 'strip-b', 'muted'].map((name) => this.theme.colour(name));
     context.font = '10px system-ui, sans-serif';
     context.textBaseline = 'middle';
     context.textAlign = 'center';
     blocks.forEach((block, k) => {
       const next = blocks[k + 1];
-      const [from, to] = [this.#x(times[block.frame], width), this.#x(next ? times[next.frame] : duration, width)];
-      context.fillStyle = colours[k % 2];
+      // Blocks that only switch something take no time.
+      if (next && next.tick === block.tick) return;
+      const [from, to] = [this.#x(block.from, width), this.#x(next ? next.from : duration, width)];
+      shade = 1 - shade;
+      context.fillStyle = colours[shade];
       context.beginPath();
       context.roundRect(from + 0.5, 0, Math.max(to - from - 1, 0.5), MOVES, 3);
       context.fill();
@@ -96,11 +100,11 @@ export class Timeline {
     const frame = this.run.nearestFrame(time);
     this.hover(frame);
     const near = (NEAR / this.strip.clientWidth) * this.run.duration;
-    const block = this.run.blocks.filter((candidate) => candidate.frame <= frame).pop();
+    const block = this.run.blockAt(frame);
     const events = this.run.events.filter((event) => event.from - near <= time && time <= event.to + near).slice(0, 6);
     this.tip.replaceChildren(
       element('div', { class: 'tip-time' }, `${seconds(time, this.run.data.tick_s)} s`, block?.line ? `  line ${block.line}` : ''),
-      ...(block ? [element('code', {}, block.text)] : []),
+      ...(block ? [element('code', {}, this.run.wordsOf(block))] : []),
       ...events.map((event) => element('div', { class: 'tip-event', style: `--mark: var(--${kindOf(event).colour})` }, event.label)),
     );
     this.tip.hidden = false;

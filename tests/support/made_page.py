@@ -117,8 +117,8 @@ def made_data(**changes: object) -> dict[str, Any]:
             {"tick": TOOL_FROM, "xyz": [0.2, 0.0, 0.0], "quat": [0.0, 0.0, 0.0, 1.0]},
         ],
         "blocks": [
-            {"tick": 1, "id": 1, "line": 5, "text": "MOVE LIN p1"},
-            {"tick": 51, "id": 2, "line": 6, "text": "MOVE LIN p2"},
+            {"tick": 0, "id": 1, "line": 5, "text": "MOVE LIN p1"},
+            {"tick": 50, "id": 2, "line": 6, "text": "MOVE LIN p2"},
         ],
         "events": [
             _event("limit", 60, 100, 6, 1, "stretch at its upper position limit"),

@@ -82,10 +82,10 @@ export class Plot {
       font: '11px system-ui, sans-serif',
       values: (_, ticks) => ticks.map((tick) => String(+tick.toPrecision(8)).replace('-', '\u2212')),
     };
-    const y = { ...axis, scale: 'y', size: LEFT, gap: 4, space: 18 };
+    const y = { ...axis, scale: 'y', size: LEFT, gap: 4, space: 15 };
     // Where one scale serves all curves the other one keeps its room, so that plots stay below each other.
     const values = (u, ticks) => (spec.single() ? ticks.map(() => '') : axis.values(u, ticks));
-    const second = { ...axis, values, scale: 'y2', side: 1, size: this.right, gap: 4, space: 18, grid: { show: false } };
+    const second = { ...axis, values, scale: 'y2', side: 1, size: this.right, gap: 4, space: 15, grid: { show: false } };
     return {
       width,
       height,
@@ -154,7 +154,7 @@ export class Plot {
     ctx.lineWidth = devicePixelRatio;
     ctx.beginPath();
     for (const block of this.run.blocks.slice(1)) {
-      const x = Math.round(u.valToPos(this.run.times[block.frame], 'x', true));
+      const x = Math.round(u.valToPos(block.from, 'x', true));
       ctx.moveTo(x, bbox.top);
       ctx.lineTo(x, bbox.top + bbox.height);
     }

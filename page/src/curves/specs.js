@@ -105,15 +105,15 @@ function pathSpec(run, theme) {
 
 function clearanceSpec(run, theme) {
   const { frames, pairs } = run.data;
-  const clearance = frames.clearance.map((value) => (value === null ? null : value * 1000));
-  const margin = frames.nearest.map((pair) => (pairs[pair] ? pairs[pair].margin * 1000 : null));
+  const margin = (frame) => pairs[frames.nearest[frame]]?.margin ?? 0;
+  // Pairs have margins of their own: how much more room there is does not jump where another pair comes nearest.
+  const room = frames.clearance.map((value, frame) => (value === null ? null : (value - margin(frame)) * 1000));
   return {
     id: 'clearance',
-    title: 'Clearance',
+    title: 'Clearance above the margin',
     unit: () => 'mm',
     series: [
-      { label: 'margin', scale: 'y', colour: () => theme.colour('muted'), values: () => margin, shown: () => true, dash: [5, 4], width: 1.1, silent: true },
-      { label: 'clearance', scale: 'y', colour: () => theme.colour('nearest'), values: () => clearance, shown: () => true, width: 1.8 },
+      { label: 'room', scale: 'y', colour: () => theme.colour('nearest'), values: () => room, shown: () => true, width: 1.8 },
     ],
     second: false,
     single: () => true,
@@ -123,8 +123,8 @@ function clearanceSpec(run, theme) {
     marks: () => [],
     readout: (frame) => {
       const pair = pairs[frames.nearest[frame]];
-      if (!pair || clearance[frame] === null) return 'nothing near';
-      return `${fixed(clearance[frame], 1)} mm  ${pair.link} – ${pair.other}`;
+      if (!pair || room[frame] === null) return 'nothing near';
+      return `${pair.link} – ${pair.other}  ${fixed(frames.clearance[frame] * 1000, 1)} mm, margin ${+(pair.margin * 1000).toFixed(1)}`;
     },
   };
 }

@@ -79,8 +79,7 @@ export class ProgramPanel {
 
   #rowAt(frame) {
     if (this.run.data.program.text !== null) return this.rows[this.run.data.frames.line[frame] - 1] ?? null;
-    const block = this.run.blocks.filter((candidate) => candidate.frame <= frame).length - 1;
-    return this.rows[block] ?? null;
+    return this.rows[this.run.blocks.indexOf(this.run.blockAt(frame))] ?? null;
   }
 
   /** Scroll only this panel, and only where the line is near or beyond its edge. */

@@ -25,6 +25,7 @@ export class ObstacleModel {
     this.surface = new MeshStandardMaterial({ transparent: true, opacity: 0.26, roughness: 0.9, side: DoubleSide });
     this.surface.depthWrite = false;
     this.edge = new LineBasicMaterial({ transparent: true, opacity: 0.75 });
+    this.plane = new MeshBasicMaterial({ transparent: true, opacity: 0.07, side: DoubleSide, depthWrite: false });
     this.hull = new MeshBasicMaterial({ transparent: true, opacity: 0.05, depthWrite: false });
     this.hullEdge = new LineBasicMaterial({ transparent: true, opacity: 0.28 });
     for (const shape of obstacle.shapes) this.#add(shape, meshes, size);
@@ -45,8 +46,9 @@ export class ObstacleModel {
 
   /** Take the colour of obstacles, stronger where the robot is `near`. */
   paint(colour, near = false) {
-    for (const material of [this.surface, this.edge, this.hull, this.hullEdge]) material.color = new Color(colour);
+    for (const material of [this.surface, this.plane, this.edge, this.hull, this.hullEdge]) material.color = new Color(colour);
     this.surface.emissive = new Color(colour).multiplyScalar(0.35);
+    this.plane.opacity = near ? 0.14 : 0.07;
     this.surface.opacity = near ? 0.34 : 0.2;
     this.edge.opacity = near ? 1 : 0.6;
     this.hullEdge.opacity = near ? 0.6 : 0.22;
@@ -56,7 +58,7 @@ export class ObstacleModel {
     const part = new Group();
     part.position.set(...shape.xyz);
     part.quaternion.set(...shape.quat);
-    if (shape.kind === 'halfspace') part.add(new Mesh(new PlaneGeometry(size, size), this.surface));
+    if (shape.kind === 'halfspace') part.add(new Mesh(new PlaneGeometry(size, size), this.plane));
     else if (shape.kind === 'point') part.add(new Mesh(new SphereGeometry(size / 150, 16, 8), this.edge));
     const geometry = geometryOf(shape, meshes);
     if (geometry) {
@@ -64,7 +66,8 @@ export class ObstacleModel {
       part.add(new LineSegments(new EdgesGeometry(geometry, 40), this.edge));
     }
     const { margin } = this.obstacle;
-    const grown = margin > 0 ? marginHull(shape, meshes, margin, size) : null;
+    // A plane at some distance from a plane looks like a second obstacle.
+    const grown = margin > 0 && shape.kind !== 'halfspace' ? marginHull(shape, meshes, margin) : null;
     if (grown) {
       part.add(new Mesh(grown, this.hull));
       part.add(new LineSegments(new EdgesGeometry(grown, 40), this.hullEdge));
@@ -73,8 +76,7 @@ export class ObstacleModel {
   }
 }
 
-function marginHull(shape, meshes, margin, size) {
-  if (shape.kind === 'halfspace') return new PlaneGeometry(size, size).translate(0, 0, margin);
+function marginHull(shape, meshes, margin) {
   if (shape.kind === 'point') return new SphereGeometry(margin, 24, 12);
   return geometryOf(shape, meshes, margin);
 }

@@ -13,9 +13,13 @@ import {
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 
 const FIELD = 38; // degrees of the camera, upright
+const SLOW = 60; // ms between two pictures that are too many, ..
+const PATIENCE = 12; // .. that often in turn
 
 export class View {
   #asked = false;
+  #last = 0;
+  #slow = 0;
   #afterDrawing = [];
   #drawn = [];
 
@@ -50,14 +54,28 @@ export class View {
   draw() {
     if (this.#asked) return;
     this.#asked = true;
-    requestAnimationFrame(() => {
+    requestAnimationFrame((now) => {
       this.#asked = false;
+      this.#pace(now);
       // Movement that dies down asks for the next picture itself, by the 'change' event.
       this.controls.update();
       this.renderer.render(this.scene, this.camera);
       for (const listener of this.#afterDrawing) listener(this.camera);
       for (const done of this.#drawn.splice(0)) done();
     });
+  }
+
+  /** Give up shadows, then sharpness, where pictures one after the other take too long, as without a graphics card. */
+  #pace(now) {
+    const took = now - this.#last;
+    this.#last = now;
+    // A long break is a rest, not a slow picture.
+    if (took > 500) return;
+    this.#slow = took > SLOW ? this.#slow + 1 : 0;
+    if (this.#slow < PATIENCE) return;
+    this.#slow = 0;
+    if (this.sun.castShadow) this.sun.castShadow = false;
+    else if (this.renderer.getPixelRatio() > 0.75) this.renderer.setPixelRatio(Math.max(0.75, this.renderer.getPixelRatio() / 1.5));
   }
 
   /** A promise that is kept once the scene has been drawn anew. */
@@ -102,8 +120,8 @@ export class View {
   paint(theme) {
     this.sky.color = new Color(theme.isDark ? '#cfdcec' : '#ffffff');
     this.sky.groundColor = new Color(theme.isDark ? '#1c242e' : '#b9c0c8');
-    this.sky.intensity = theme.isDark ? 1.25 : 1.75;
-    this.sun.intensity = theme.isDark ? 2.1 : 2.2;
+    this.sky.intensity = theme.isDark ? 1.25 : 1.5;
+    this.sun.intensity = theme.isDark ? 2.1 : 2.0;
     this.draw();
   }
 
