@@ -10,6 +10,7 @@ pytest.importorskip("matplotlib")
 from drawn_streams import DrawnStream, square_and_slow
 from irlx.report.plot.figure import draw_figure, save_figure
 from irlx.report.plot.make_curves import Subject, curves_of
+from irlx.report.plot.panel import MOST_POINTS, thinned
 from irlx.report.plot.quantity import JOINT_QUANTITIES, QUANTITIES, Quantity
 from irlx.robot.limits import JointLimits
 from irlx.streams.error import StreamError
@@ -130,6 +131,20 @@ def test_pages_of_few_and_of_many_joints(curves):
     assert min(heights) > 0.5
     boxes = sorted(axes.get_position().bounds for axes in many.axes[:60:3])
     assert all(a[1] + a[3] < b[1] for a, b in pairwise(boxes))
+
+
+def test_long_curves_are_thinned_and_keep_their_peaks():
+    t = np.arange(100_001) * 1e-3
+    values = np.sin(t)
+    values[[12_345, 70_001]] = 9.0, -7.0
+    fewer, shown = thinned(t, values)
+    assert len(fewer) <= MOST_POINTS
+    assert (fewer[0], fewer[-1]) == (t[0], t[-1])
+    assert np.all(np.diff(fewer) > 0.0)
+    assert (shown.max(), shown.min()) == (9.0, -7.0)
+    assert fewer[shown.argmax()] == t[12_345]
+    np.testing.assert_array_equal(shown, values[np.searchsorted(t, fewer)])
+    np.testing.assert_array_equal(thinned(t[:100], values[:100])[1], values[:100])
 
 
 def test_width_in_mm(curves):

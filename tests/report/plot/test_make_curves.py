@@ -59,6 +59,15 @@ def test_just_below_a_limit_is_not_at_it(stream):
     assert curves.limit_spans == ()
 
 
+def test_what_slows_the_tool_is_at_its_limit_below_it_too(stream):
+    # A plan keeps a reserve: 93 % of the limit count in the rows from 142 on that are slower than programmed.
+    q = stream.q.copy()
+    q[121:, 1] = q[121, 1] - np.minimum(0.00093 * np.arange(len(q) - 121), 0.15)
+    other = type(stream)(stream.header, stream.records, stream.ticks, q, stream.block, stream.tool, True)
+    curves, _ = curves_of(Subject(other, "x"), JOINT_QUANTITIES)
+    assert curves.spans(Quantity.SPEED, 1)[1] == pytest.approx((1.41, 121 * DT + 1.61))
+
+
 def test_moves_and_slowed_spans(curves):
     assert [(mark.time, mark.line) for mark in curves.moves] == [(0.0, 10), (1.21, 30)]
     assert curves.slowed == (pytest.approx((1.41, 3.01)),)

@@ -15,7 +15,7 @@ from irlx.report.clearances import Clearances
 from irlx.report.curves import limits_over, outline_of_stream, smallest_singular_values, tool_rates
 from irlx.report.plot.curves import Bounds, Curves, LimitSpan, MoveMark, Track
 from irlx.report.plot.quantity import JOINT_QUANTITIES, Quantity
-from irlx.report.programmed_pace import programmed_pace
+from irlx.report.programmed_pace import ProgrammedPace, programmed_pace
 from irlx.robot.description import RobotDescription
 from irlx.scene.scene import Scene
 from irlx.streams.joint_stream import JointStream
@@ -28,8 +28,9 @@ Integers = NDArray[np.int64]
 AT_POSITION = 1e-3
 """Distance from a position limit, rad or m, up to which a joint counts as at it."""
 
-AT_RATE = 0.98
-"""Part of a speed or acceleration limit from which on a joint counts as at it."""
+AT_RATE, AT_RATE_SLOWED = 0.98, 0.9
+"""Part of a speed or acceleration limit from which on a joint counts as at it; and where the tool is slower than
+programmed, since a plan keeps a reserve."""
 
 MOST_ROWS = 3000
 """Rows in which singular values and clearances are worked out; of longer streams every k-th."""
@@ -81,7 +82,7 @@ def curves_of(
         limit_spans=tuple(
             span
             for quantity in quantities
-            for span in _limit_spans(stream, limits, quantity, joint_rows[quantity.value], inside)
+            for span in _limit_spans(stream, limits, quantity, joint_rows[quantity.value], inside, pace)
         ),
         moves=_moves(stream, window),
         slowed=tuple(_times(stream, pace.slowed, window)),
@@ -111,7 +112,12 @@ def _bounds(
 
 
 def _limit_spans(
-    stream: JointStream, limits: LimitsInForce, quantity: Quantity, values: Array, inside: Integers
+    stream: JointStream,
+    limits: LimitsInForce,
+    quantity: Quantity,
+    values: Array,
+    inside: Integers,
+    pace: ProgrammedPace,
 ) -> Iterator[LimitSpan]:
     """Spans in which joints are at limits. A limit that leaves a joint no room is none that it comes to."""
     if not inside.size:
@@ -122,7 +128,10 @@ def _limit_spans(
     if quantity is Quantity.POSITION:
         at = (here <= lower + AT_POSITION) | (here >= upper - AT_POSITION)
     else:
-        at = ((here <= AT_RATE * lower) & (lower < 0.0)) | ((here >= AT_RATE * upper) & (upper > 0.0))
+        part = np.full((len(inside), 1), AT_RATE)
+        for begin, end in pace.slowed:
+            part[(inside >= begin) & (inside <= end)] = AT_RATE_SLOWED
+        at = ((here <= part * lower) & (lower < 0.0)) | ((here >= part * upper) & (upper > 0.0))
     at &= lower < upper
     for joint in range(here.shape[1]):
         for begin, end in _runs(at[:, joint]):

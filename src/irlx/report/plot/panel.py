@@ -21,6 +21,8 @@ every eye and a print without colour tell them apart."""
 ONE, LIMIT, INK, MARGIN = "#14566e", "#a02040", "#222222", "#7a5200"
 ACTIVE, SLOW, GRID = "#f3d3da", "#f6e3b4", "#eceff3"
 _DASHED, _SHORT = (0, (6, 3)), (0, (3, 2))
+MOST_POINTS = 12_000
+"""Points of a curve from which on those are left out that no page shows."""
 _REACH = 0.35
 """How far a limit may lie outside of a curve and still be drawn, as a part of the curve's range."""
 
@@ -28,6 +30,21 @@ _REACH = 0.35
 def style_of(number: int, count: int) -> tuple[str, float]:
     """Colour and width of the curves of one stream among `count`."""
     return (ONE, 1.1) if count == 1 else (COLOURS[number], WIDTHS[number])
+
+
+def thinned(t: Array, values: Array) -> tuple[Array, Array]:
+    """A curve of N rows by fewer that look the same: of every k rows the first, the least, the greatest and
+    the last. Curves of no more than `MOST_POINTS` rows stay as they are."""
+    rows = len(t)
+    if rows <= MOST_POINTS:
+        return t, values
+    each = -(-4 * rows // MOST_POINTS)
+    begins = np.arange(0, rows, each)
+    filled = np.where(np.isfinite(values), values, 0.0)
+    filled = np.concatenate([filled, np.full(-rows % each, filled[-1])]).reshape(-1, each)
+    picked = [begins, begins + filled.argmin(axis=1), begins + filled.argmax(axis=1), begins + each - 1]
+    which = np.unique(np.minimum(np.concatenate(picked), rows - 1))
+    return t[which], values[which]
 
 
 def draw_joint(axes: Axes, all_curves: Sequence[Curves], quantity: Quantity, joint: int) -> None:
@@ -41,8 +58,7 @@ def draw_joint(axes: Axes, all_curves: Sequence[Curves], quantity: Quantity, joi
         values = curves.values[quantity][:, joint]
         seen.append(values)
         axes.plot(
-            curves.t,
-            values,
+            *thinned(curves.t, values),
             color=colour,
             linewidth=width,
             drawstyle=style,
@@ -68,8 +84,7 @@ def draw_track(axes: Axes, tracks: Sequence[Track | None], all_curves: Sequence[
         apart = track.apart
         if np.isfinite(apart).any():
             axes.plot(
-                track.t,
-                apart,
+                *thinned(track.t, apart),
                 color=MARGIN if count == 1 else colour,
                 linewidth=0.9,
                 linestyle=_SHORT,
@@ -79,8 +94,7 @@ def draw_track(axes: Axes, tracks: Sequence[Track | None], all_curves: Sequence[
             )
             highest = max(highest, _greatest(apart))
         axes.plot(
-            track.t,
-            track.values,
+            *thinned(track.t, track.values),
             color=colour,
             linewidth=width,
             drawstyle=style,
@@ -120,7 +134,7 @@ def _mark_spans(axes: Axes, spans: list[tuple[float, float]], number: int, count
             axes.axvspan(begin, end, color=ACTIVE, linewidth=0.0, gid="active", zorder=0.5)
         return
     colour, _ = style_of(number, count)
-    top = 1.0 - 0.06 * number
+    top = 0.97 - 0.07 * number
     for begin, end in spans:
         axes.axvspan(begin, end, top - 0.05, top, color=colour, linewidth=0.0, gid="active bar", zorder=4.0)
 
