@@ -54,7 +54,8 @@ def test_where_joints_are_at_limits(stream, curves):
 
 def test_just_below_a_limit_is_not_at_it(stream):
     slower = stream.q * (AT_RATE - 1e-3)
-    other = type(stream)(stream.header, stream.records, stream.ticks, slower, stream.block, stream.tool, True)
+    still = np.tile(stream.tool[0], (len(slower), 1))
+    other = type(stream)(stream.header, stream.records, stream.ticks, slower, stream.block, still, True)
     curves, _ = curves_of(Subject(other, "x"), JOINT_QUANTITIES)
     assert curves.limit_spans == ()
 

@@ -29,8 +29,8 @@ AT_POSITION = 1e-3
 """Distance from a position limit, rad or m, up to which a joint counts as at it."""
 
 AT_RATE, AT_RATE_SLOWED = 0.98, 0.9
-"""Part of a speed or acceleration limit from which on a joint counts as at it; and where the tool is slower than
-programmed, since a plan keeps a reserve."""
+"""Part of a speed or acceleration limit from which on a joint counts as at it; and where the tool is slower
+than programmed, since a plan keeps a reserve."""
 
 MOST_ROWS = 3000
 """Rows in which singular values and clearances are worked out; of longer streams every k-th."""
