@@ -121,4 +121,4 @@ def _check_others(source: Path, outputs: Sequence[Path]) -> None:
     """Raise IRL005 where an output is the source, by whatever name."""
     for path in outputs:
         if path.exists() and source.exists() and path.samefile(source):
-            raise StreamError(report("IRL005", path=path))
+            raise StreamError(report("IRL005", option="-o", path=path))

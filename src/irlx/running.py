@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from irlx.blocks import Block
 from irlx.diagnostics import Diagnostic, IrlxError, report
 from irlx.interpreter.channels.pieces import InputGiven
-from irlx.job import CellGiven, InputsGiven, PathLike, prepare
+from irlx.job import CellGiven, InputsGiven, Job, PathLike, prepare
 from irlx.language.suppression import without_ignored
 from irlx.pacing.correction.corrector import Senses
 from irlx.pacing.correction.nearness import Nearness
@@ -29,6 +29,9 @@ from irlx.report.file_recording import FileRecording
 from irlx.report.outcome import Outcome
 from irlx.report.recorder import Recorder
 from irlx.report.recording import Recording
+from irlx.report.replay.names import is_page
+from irlx.report.replay.source import ReplaySource
+from irlx.report.replay.writer import PageWriter
 from irlx.report.run import Run, RunError, RunInterrupted
 from irlx.report.samples import Samples
 from irlx.scene.sightings import Sightings
@@ -104,7 +107,8 @@ def record(
 ) -> Outcome:
     """Run a program and write its joint stream to files while it goes on, with little memory however long.
 
-    `outputs` is a path, or several, each in the format of its ending; all else as in `run`. The files appear
+    `outputs` is a path, or several, each in the format of its ending, one of them with the ending .html for a
+    page that replays the run; all else as in `run`. The files appear
     at the end, whole. Of a program that ends in an error, and after Ctrl-C, what was executed appears beside
     them as `NAME.partial.ENDING`, marked incomplete. Raises what `run` raises, and StreamError: IRL003 where
     a file cannot be written, IRL004 for an unknown ending.
@@ -112,12 +116,18 @@ def record(
     channels = files, input, output
     job = prepare(program, cell, tick_ms, max_slow, max_steps, inputs, *channels, pause_s)
     paths = [outputs] if isinstance(outputs, str | os.PathLike) else list(outputs)
-    return execute_to_files(Execution(job), [Path(path) for path in paths], progress, explain_tick)
+    streams = [Path(path) for path in paths if not is_page(path)]
+    pages = [Path(path) for path in paths if is_page(path)]
+    if len(pages) > 1:
+        raise IrlxError(report("IRL006", option="outputs=", value=str(pages[1]), cause="one page a run"))
+    page = pages[0] if pages else None
+    return execute_to_files(Execution(job), streams, progress, explain_tick, page)
 
 
 def execute(execution: Execution, progress: Progress | None = None, explain_tick: int | None = None) -> Run:
     """Run a prepared job to its end; see `run`."""
-    return _finished(execution, Recording(*execution.start(), execution.tool_in), progress, explain_tick)
+    recording = Recording(*execution.start(), execution.tool_in, replay_source(execution.job))
+    return _finished(execution, recording, progress, explain_tick)
 
 
 def execute_to_files(
@@ -125,10 +135,13 @@ def execute_to_files(
     outputs: Sequence[Path],
     progress: Progress | None = None,
     explain_tick: int | None = None,
+    page: Path | None = None,
 ) -> Outcome:
-    """Run a prepared job to its end, its rows going to files; see `record`."""
+    """Run a prepared job to its end, its rows going to files, and a replay to a `page`; see `record`."""
     header, start, rotation, position = execution.start()
-    recording = FileRecording(header, start, (rotation, position), outputs, execution.tool_in)
+    writer = None if page is None else PageWriter(page, header, replay_source(execution.job))
+    pose = rotation, position
+    recording = FileRecording(header, start, pose, outputs, execution.tool_in, writer)
     try:
         return _finished(execution, recording, progress, explain_tick)
     finally:
@@ -144,6 +157,7 @@ class _Recording(Protocol[Result_co]):
     @property
     def duration(self) -> float: ...
     def add(self, executed: Executed) -> None: ...
+    def say(self, text: str) -> None: ...
     def finish(self, complete: bool, diagnostics: tuple[Diagnostic, ...]) -> Result_co: ...
 
 
@@ -160,6 +174,7 @@ def _finished(
         found = recording.finish(complete, diagnostics)
         return replace(found, explanation=explanation, output=execution.channels.output)
 
+    execution.channels.heard_by(recording.say)
     try:
         for executed in execution:
             if explain_tick is not None and explanation is None:
@@ -174,6 +189,12 @@ def _finished(
     except KeyboardInterrupt as interrupt:
         raise RunInterrupted(finish(False, _told(execution))) from interrupt
     return finish(True, _told(execution))
+
+
+def replay_source(job: Job) -> ReplaySource:
+    """What a replay of a job shows beside its rows."""
+    text = job.program.source
+    return ReplaySource(job.cell, None if text is None else text.text)
 
 
 def _told(execution: Execution) -> tuple[Diagnostic, ...]:

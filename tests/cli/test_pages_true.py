@@ -23,6 +23,7 @@ CODES = [
 ELSEWHERE = {"IRL010", "IRL011", "IRL019"}
 """Codes whose example takes streams, or that a package is not installed; `test_plot.py` has them."""
 IN_WORDS = {
+    "IRL012",
     "IRL440",
     "IRL442",
     "IRL515",

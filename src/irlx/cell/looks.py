@@ -32,6 +32,9 @@ class RobotLooks:
 def robot_looks(cell: Cell) -> RobotLooks:
     """Looks of a cell's robot, for which its URDF is read once more."""
     folder = Path(cell.file).parent
+    if not (folder / cell.model).exists():
+        # A cell without a file of its own names its model from the working folder.
+        folder = Path()
     try:
         text = _urdf(cell, folder)
         found, model = link_visuals(text), read_urdf(text, cell.robot.tip)

@@ -6,13 +6,14 @@ import argparse
 import json
 import os
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from contextlib import AbstractContextManager
 from dataclasses import replace
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, cast
 
 from irlx.cli.execution import add_execution_options, add_plugin_option, import_plugins, standard_input
+from irlx.cli.outputs import output_paths, page_path, written
 from irlx.cli.program_text import ProgramText
 
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ _EXAMPLE = """\
 examples:
   irlx run programs/koch/square.irl
   irlx run programs/koch/square.irl --tick 10 -o square.npz -o square.csv
+  irlx run programs/koch/square_cyclic.irl --html square.html
   irlx run programs/koch/square.irdata --cell programs/koch/square.toml
 """
 
@@ -42,16 +44,7 @@ def add_parser(commands: Any) -> None:
         "program", metavar="P", nargs="?", help="program file, or a stream file that is to be replayed"
     )
     parser.add_argument("--cell", metavar="C.toml", help="cell file (default: found beside the program)")
-    parser.add_argument(
-        "-o",
-        "--output",
-        action="append",
-        default=[],
-        metavar="OUT",
-        help="stream, format by its ending: .irdata, .npz, .jsonl, .csv, .parquet, .rosbag; may be given "
-        "several times (default: P.irdata beside the program, or in the working folder; of a replay "
-        "P.replay.irdata)",
-    )
+    _add_output_options(parser)
     parser.add_argument("--tick", type=float, metavar="MS", help="duration of a tick (default: the cell's)")
     parser.add_argument(
         "--max-slow",
@@ -91,6 +84,25 @@ def add_parser(commands: Any) -> None:
     parser.set_defaults(command=command, refuse=parser.error)
 
 
+def _add_output_options(parser: Any) -> None:
+    """Add `--output` and `--html`."""
+    parser.add_argument(
+        "-o",
+        "--output",
+        action="append",
+        default=[],
+        metavar="OUT",
+        help="stream, format by its ending: .irdata, .npz, .jsonl, .csv, .parquet, .rosbag; may be given "
+        "several times (default: P.irdata beside the program, or in the working folder; of a replay "
+        "P.replay.irdata)",
+    )
+    parser.add_argument(
+        "--html",
+        metavar="F.html",
+        help="also write a page that replays the run: robot, program and curves in one file for any browser",
+    )
+
+
 def command(options: argparse.Namespace) -> int:
     """Run the program; exit code 1 where it ended in an error or the verification failed."""
     from irlx.cli.output import exit_code, print_diagnostics
@@ -102,7 +114,7 @@ def command(options: argparse.Namespace) -> int:
     if options.program is None:
         options.refuse("the following arguments are required: P")
     text = ProgramText()
-    job, outputs = _prepared(options, text)
+    job, outputs, page = _prepared(options, text)
     from irlx.pipeline import Execution
     from irlx.report.run import RunError, RunInterrupted
     from irlx.running import execute_to_files
@@ -111,18 +123,18 @@ def command(options: argparse.Namespace) -> int:
     try:
         with _progress(options) as progress:
             text.first = getattr(progress, "silence", None)
-            run = execute_to_files(execution, outputs, progress, options.explain_tick)
+            run = execute_to_files(execution, outputs, progress, options.explain_tick, page)
     except RunError as error:
         text.end_line()
         print_diagnostics(error.diagnostics)
         if not options.json:
             _print_tick(error.run, options)
-        _tell_partial(error.run, outputs, _why(error.diagnostics[0]), options)
+        _tell_partial(error.run, [*outputs, *_pages(page)], _why(error.diagnostics[0]), options)
         return exit_code(error.diagnostics)
     except RunInterrupted as interrupt:
         text.end_line()
         print("irlx: interrupted", file=sys.stderr)
-        _tell_partial(interrupt.run, outputs, "interrupted", options)
+        _tell_partial(interrupt.run, [*outputs, *_pages(page)], "interrupted", options)
         return 130
     if not options.quiet or run.diagnostics:
         text.end_line()
@@ -139,8 +151,12 @@ def command(options: argparse.Namespace) -> int:
     return 1 if broken else 0
 
 
-def _prepared(options: argparse.Namespace, text: ProgramText) -> tuple[Job, list[Path]]:
-    """Job and files to write; what is wrong with them goes to stdout as well where JSON is asked for."""
+def _pages(page: Path | None) -> list[Path]:
+    return [] if page is None else [page]
+
+
+def _prepared(options: argparse.Namespace, text: ProgramText) -> tuple[Job, list[Path], Path | None]:
+    """Job, streams and page to write; what is wrong with them goes to stdout as well where JSON is wanted."""
     from irlx.diagnostics import IrlxError
     from irlx.program import load
 
@@ -162,41 +178,17 @@ def _prepared(options: argparse.Namespace, text: ProgramText) -> tuple[Job, list
         inputs += () if options.inputs is None else (Path(options.inputs),)
         asked_for = options.output or [_default_output(job)]
         outputs = output_paths(asked_for, inputs)
-        channels = job.channels.protecting(_written(outputs), "a stream of this run")
+        page = None if options.html is None else page_path(options.html, inputs, outputs)
+        channels = job.channels.protecting(written(outputs), "a stream of this run")
+        channels = channels.protecting(written(_pages(page)), "the page of this run")
         if options.inputs is not None:
             channels = channels.protecting((Path(options.inputs),), "the inputs of this run")
-        return replace(job, channels=channels), outputs
+        return replace(job, channels=channels), outputs, page
     except IrlxError as error:
         if options.json:
             plain = {"summary": None, "output": "", "diagnostics": _plain_diagnostics(error.diagnostics)}
             print(json.dumps(plain, indent=2))
         raise
-
-
-def output_paths(asked: Sequence[str | Path], inputs: tuple[Path, ...]) -> list[Path]:
-    """Files and folders to write, checked before anything moves.
-
-    Raises StreamError: IRL003 not writable, IRL004 unknown ending, IRL005 an input would be overwritten,
-    IRL720 a package that the format needs is missing.
-    """
-    from irlx.diagnostics import report
-    from irlx.streams.error import StreamError
-    from irlx.streams.formats import format_of
-
-    paths = [Path(name) for name in asked]
-    for path in paths:
-        known = format_of(path, "IRL004")
-        if any(_holds(path, source) for source in inputs):
-            raise StreamError(report("IRL005", path=path))
-        known.check(path)
-    return paths
-
-
-def _holds(path: Path, source: Path) -> bool:
-    """Whether an output is an input, or a folder that an input stands in."""
-    if not (path.exists() and source.exists()):
-        return False
-    return path.samefile(source) or source.resolve().is_relative_to(path.resolve())
 
 
 def _default_output(job: Job) -> Path:
@@ -216,13 +208,6 @@ def _progress(options: argparse.Namespace) -> AbstractContextManager[Any]:
     from irlx.report.progress import LiveProgress
 
     return LiveProgress()
-
-
-def _written(outputs: list[Path]) -> tuple[Path, ...]:
-    """Every file that a run may write by itself."""
-    from irlx.report.file_recording import partial_name
-
-    return (*outputs, *map(partial_name, outputs))
 
 
 def _why(error: Diagnostic) -> str:
@@ -245,6 +230,9 @@ def _tell_partial(run: Outcome, outputs: list[Path], why: str, options: argparse
             )
     for path in run.files:
         words = f"the stream up to the last stop ({run.summary.duration:.6g} s), marked incomplete: {path}"
+        print(encodable(f"irlx: {words}", sys.stderr), file=sys.stderr)
+    if run.page is not None:
+        words = f"a page of what was executed: {run.page}"
         print(encodable(f"irlx: {words}", sys.stderr), file=sys.stderr)
     if options.json:
         plain = {
@@ -292,6 +280,7 @@ def _print_summary(
     options: argparse.Namespace,
 ) -> None:
     from irlx.cli.output import print_lines
+    from irlx.report.lines import Line
     from irlx.report.terminal import failed_lines, file_lines, summary_lines
 
     if options.json:
@@ -300,6 +289,7 @@ def _print_summary(
             "output": run.output,
             "tick": run.explanation.to_plain() if run.explanation is not None else None,
             "files": [str(path) for path in outputs],
+            "page": None if run.page is None else str(run.page),
             "verified": {name: report.passed for name, report in reports.items()},
             "diagnostics": _plain_diagnostics([*run.diagnostics, *broken]),
         }
@@ -311,4 +301,5 @@ def _print_summary(
         return
     verified = None if options.no_verify else not broken
     files = file_lines(run.summary, [str(path) for path in outputs], reports)
-    print_lines([*summary_lines(run.summary, verified), *files])
+    pages = [] if run.page is None else [Line("page", str(run.page))]
+    print_lines([*summary_lines(run.summary, verified), *files, *pages])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from irlx.diagnostics import Diagnostic
 from irlx.report.figures import Figures
 from irlx.report.outcome import Outcome
 from irlx.report.recorder import Recorder
+from irlx.report.replay.writer import PageWriter
 from irlx.report.returns import Seen
 from irlx.report.segment import Segment
 from irlx.report.uninterrupted import uninterrupted
@@ -39,30 +41,48 @@ class FileRecording(Recorder):
         pose: tuple[Array, Array],
         outputs: Sequence[Path],
         seen: Seen | None = None,
+        page: PageWriter | None = None,
     ) -> None:
         """Begin at posture `start` (n,), the tool at `pose`: rotation (3, 3), position (3,) m, world."""
         self._figures, self._files = Figures(header, seen), _Files(header, outputs)
+        self._page = page
+        keepers = (self._figures, self._files) if page is None else (self._figures, self._files, page)
         try:
-            super().__init__(header, start, *pose, (self._figures, self._files))
+            super().__init__(header, start, *pose, keepers)
         except BaseException:
-            self._files.abort()
+            self.abort()
             raise
+
+    def say(self, text: str) -> None:
+        """Take what the program writes for the terminal."""
+        if self._page is not None:
+            self._page.say(text)
 
     def finish(self, complete: bool, diagnostics: tuple[Diagnostic, ...]) -> Outcome:
         """Let the files appear; of a run in which nothing has moved, none."""
+        worth = complete or self.rows > 1
         with uninterrupted():
-            files = self._files.close(complete, worth=complete or self.rows > 1)
-        return Outcome(
+            files = self._files.close(complete, worth)
+        found = Outcome(
             header=self.header,
             summary=self._figures.summary(complete),
             events=self._figures.events,
             diagnostics=diagnostics,
             files=files,
         )
+        if self._page is None or not worth:
+            return found
+        # Behind the streams, which are worth more.
+        name = None if complete else partial_name(self._page.path)
+        with uninterrupted():
+            page, warnings = self._page.close(found, name)
+        return replace(found, page=page, diagnostics=(*diagnostics, *warnings))
 
     def abort(self) -> None:
         """Remove what was written."""
         self._files.abort()
+        if self._page is not None:
+            self._page.abort()
 
 
 def partial_name(path: Path) -> Path:

@@ -17,7 +17,7 @@ class Outcome:
     """Header of its stream, events, summary and warnings of one execution; `print` shows its summary.
 
     `explanation` is that of the tick asked for with `explain_tick`, None where no motion has it; `output` is
-    what the program wrote to STANDARD_OUT; `files` what was written while it ran.
+    what the program wrote to STANDARD_OUT; `files` the streams written while it ran, `page` the page.
     """
 
     header: StreamHeader
@@ -27,6 +27,7 @@ class Outcome:
     explanation: TickExplanation | None = None
     output: str = ""
     files: tuple[Path, ...] = ()
+    page: Path | None = None
 
     def __str__(self) -> str:
         return str(self.summary)

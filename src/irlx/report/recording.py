@@ -9,9 +9,11 @@ from irlx.diagnostics import Diagnostic
 from irlx.report.clearances import clearances
 from irlx.report.figures import Figures
 from irlx.report.recorder import Recorder
+from irlx.report.replay.source import ReplaySource
 from irlx.report.returns import Seen
 from irlx.report.run import Run
 from irlx.report.segment import Segment
+from irlx.robot.limits import JointLimits, alike
 from irlx.streams.joint_stream import JointStream, StreamHeader
 
 Array = NDArray[np.float64]
@@ -27,10 +29,17 @@ class Recording(Recorder):
         rotation: Array,
         position: Array,
         seen: Seen | None = None,
+        source: ReplaySource | None = None,
     ) -> None:
         """Begin at posture `start` (n,), the tool at `rotation` (3, 3), `position` (3,) m, in the world."""
         self._figures, self._kept = Figures(header, seen), _Kept()
+        self._source = source
+        self._messages: list[tuple[int, str]] = []
         super().__init__(header, start, rotation, position, (self._figures, self._kept))
+
+    def say(self, text: str) -> None:
+        """Take what the program writes for the terminal."""
+        self._messages.append((max(self.rows - 1, 0), text))
 
     def finish(self, complete: bool, diagnostics: tuple[Diagnostic, ...]) -> Run:
         """The run as it stands."""
@@ -46,6 +55,9 @@ class Recording(Recorder):
             diagnostics=diagnostics,
             stream=stream,
             clearances=clearances((len(segment.q), segment.nearest) for segment in segments),
+            limits=tuple(self._kept.limits),
+            messages=tuple(self._messages),
+            source=self._source,
         )
 
 
@@ -54,6 +66,9 @@ class _Kept:
 
     def __init__(self) -> None:
         self.segments: list[Segment] = []
+        self.limits: list[tuple[int, JointLimits]] = []
 
     def take(self, segment: Segment) -> None:
         self.segments.append(segment)
+        if len(segment.q) and not (self.limits and alike(self.limits[-1][1], segment.limits)):
+            self.limits.append((segment.first_tick, segment.limits))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,10 @@ from numpy.typing import NDArray
 from irlx.diagnostics import Diagnostic, IrlxError
 from irlx.report.clearances import Clearances, clearances
 from irlx.report.outcome import Outcome
+from irlx.report.replay.names import is_page
+from irlx.report.replay.source import ReplaySource
 from irlx.report.signals import Signal, signals_of
+from irlx.robot.limits import JointLimits
 from irlx.streams.formats import write_stream
 from irlx.streams.joint_stream import JointStream
 
@@ -26,11 +30,16 @@ class Run(Outcome):
     Arrays of N samples and n joints: `t` (N,) s; `q`, `qd`, `qdd` (N, n) rad | m and per s, s2, the
     rates being backward differences of the emitted q, from rest before tick 0; `tool` (N, 7) x y z in
     m and unit quaternion x y z w of the tool frame in the world; `block` (N,) id of the move.
-    `clearances` is what came nearest in each sample. See `Outcome` for what else there is.
+    `clearances` is what came nearest in each sample; `limits` are those of the joints, each with the tick
+    from which on it is in force; `messages` what was written to STANDARD_OUT, each with its tick;
+    `source` what a replay page shows beside all this. See `Outcome` for what else there is.
     """
 
     stream: JointStream
     clearances: Clearances = field(default_factory=lambda: clearances(()))
+    limits: tuple[tuple[int, JointLimits], ...] = ()
+    messages: tuple[tuple[int, str], ...] = ()
+    source: ReplaySource | None = field(default=None, repr=False)
 
     @property
     def t(self) -> Array:
@@ -74,10 +83,22 @@ class Run(Outcome):
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the stream in the format of the ending: .irdata, .npz, .jsonl, .csv, .parquet, .rosbag.
 
+        With the ending .html it is a page that replays the run: robot, program and curves in one file.
         The file, or the folder of a .rosbag, appears whole or not at all. Raises StreamError: IRL003 not
-        writable, IRL004 unknown ending, IRL720 an extra is missing.
+        writable, IRL004 unknown ending, IRL720 an extra is missing, IRL722 a page of a run without `source`.
         """
-        write_stream(self.stream, path)
+        if is_page(path):
+            from irlx.report.replay.writing import write_page
+
+            write_page(self, Path(path))
+        else:
+            write_stream(self.stream, path)
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the summary, and a small replay."""
+        from irlx.report.replay.writing import notebook_html
+
+        return notebook_html(self)
 
 
 class RunError(IrlxError):

@@ -20,7 +20,8 @@ _MOST = 4
 _MOST_JOINTS = 3
 """The same for joints in one line."""
 
-_PER = {"position": "", "speed": "/s", "acceleration": "/s2"}
+PER = {"position": "", "speed": "/s", "acceleration": "/s2"}
+"""What follows the unit of a joint in values of each kind of limit."""
 
 
 def summary_text(summary: Summary, verified: bool | None = None) -> str:
@@ -95,7 +96,8 @@ def _tick(summary: Summary) -> float:
     return summary.duration / max(summary.samples - 1, 1)
 
 
-def _value(value: float, unit: str, per: str = "") -> str:
+def joint_value(value: float, unit: str, per: str = "") -> str:
+    """A value in rad | m (`unit`), or in that `per` time, for people: in deg or mm."""
     if abs(value) < 1e-6:
         return f"{value:.2g} {unit}{per}"
     return f"{degrees(value):.4g} deg{per}" if unit == "rad" else f"{value * 1000.0:.4g} mm{per}"
@@ -112,7 +114,7 @@ def _uses(uses: Sequence[LimitUse], units: dict[str, str]) -> list[str]:
             use.kind,
             f"{100.0 * use.share:.4g} %",
             use.joint,
-            _of(use.value, use.bound, units.get(use.joint, "rad"), _PER[use.kind]),
+            _of(use.value, use.bound, units.get(use.joint, "rad"), PER[use.kind]),
             f"tick {use.tick}",
         )
         for use in uses
@@ -157,7 +159,7 @@ def _clearance(found: SmallestClearance) -> str:
 def _closure(found: Closure, units: dict[str, str]) -> str:
     if found.difference <= CLOSURE:
         return f"tool and posture end where they began, to {found.difference:.2g} rad|m"
-    off = _value(found.difference, units.get(found.joint, "rad"))
+    off = joint_value(found.difference, units.get(found.joint, "rad"))
     return f"the tool ends where it began, but {found.joint} is off by {off}"
 
 
@@ -177,7 +179,7 @@ def _slowed(events: Sequence[Slowed], units: dict[str, str]) -> list[str]:
 def _slowing(event: Slowed, units: dict[str, str]) -> tuple[str, ...]:
     unit, scale = ("deg", degrees(1.0)) if event.turns else ("mm", 1000.0)
     requested, achieved = (f"{value * scale:.4g}" for value in (event.requested, event.achieved))
-    bound = f"{_value(event.bound, units.get(event.joint, 'rad'), _PER.get(event.kind, ''))}"
+    bound = f"{joint_value(event.bound, units.get(event.joint, 'rad'), PER.get(event.kind, ''))}"
     return (
         f"line {event.line}",
         f"{event.first_time:.6g}-{event.last_time:.6g} s",
@@ -207,6 +209,6 @@ def _off(one: Return, units: Sequence[str], names: Sequence[str]) -> str:
     """The joints that are off most, and how many others are."""
     joints = [joint for joint in zip(one.left, names, units, strict=True) if abs(joint[0]) > CLOSURE]
     joints.sort(key=lambda joint: -abs(joint[0]))
-    told = [f"{name} {_value(left, unit)}" for left, name, unit in joints[:_MOST_JOINTS]]
+    told = [f"{name} {joint_value(left, unit)}" for left, name, unit in joints[:_MOST_JOINTS]]
     others = len(joints) - _MOST_JOINTS
     return ", ".join([*told, *([f"and {others} more joints"] if others > 0 else [])])

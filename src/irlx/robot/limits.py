@@ -46,3 +46,11 @@ class JointLimits:
     def pair(self, kind: str) -> tuple[Array, Array]:
         """Lower and upper bounds of `kind`: 'position', 'speed' or 'acceleration'."""
         return getattr(self, f"{kind}_lower"), getattr(self, f"{kind}_upper")
+
+
+def alike(first: JointLimits, second: JointLimits) -> bool:
+    """Whether two sets of limits are the same, bit by bit."""
+    return first is second or all(
+        np.array_equal(getattr(first, name), getattr(second, name))
+        for name in JointLimits.__dataclass_fields__
+    )

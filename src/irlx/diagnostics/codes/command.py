@@ -7,7 +7,7 @@ COMMAND = (
     error("IRL002", "cannot read {path}: {cause}"),
     error("IRL003", "cannot write {path}: {cause}", "name another file with -o"),
     error("IRL004", "-o {path}: no format has the ending '{ending}'; known: {known}"),
-    error("IRL005", "-o {path} would overwrite an input of this run", "name another file"),
+    error("IRL005", "{option} {path} would overwrite an input of this run", "name another file"),
     error("IRL006", "{option} {value}: {cause}"),
     error("IRL007", "{path} is a folder, not a file"),
     error("IRL008", "{name} is a {kind}, which does not run by itself", "run a PROGRAM that imports from it"),
@@ -17,6 +17,8 @@ COMMAND = (
         "name a module that Python finds, or a file that ends with .py",
     ),
     error("IRL010", "{command} needs {package}: pip install 'irlx[{extra}]'"),
+    error("IRL012", "--html {path} is also {what}", "give the page a name of its own"),
+    error("IRL013", "--html {path}: the name of a page ends with .html", "for example --html {example}"),
     error(
         "IRL011",
         "{first} and {second} cannot be drawn over each other: {cause}",

@@ -97,6 +97,11 @@ STREAM: tuple[Code, ...] = (
         "pictures show its collision shapes, or nothing of it; what the robot does is not touched by that",
     ),
     error(
+        "IRL722",
+        "{path}: a page shows the robot of a cell, and this Run does not know its cell",
+        "runs that irlx.run gives back know theirs",
+    ),
+    error(
         "IRL725",
         "this format has no blocks, so that there is nothing to be replayed",
         "formats with blocks: {known}",

@@ -37,6 +37,7 @@ class Channels:
         self.files = files or MemoryFiles()
         self._input = TextReader(STANDARD_IN, pull or once(""))
         self._told = told
+        self._listener: Callable[[str], None] | None = None
         self._open: list[OpenFile] = []
         self._shown = StringIO()
         self._show_left, self._write_left = MOST_SHOWN, MOST_WRITTEN
@@ -46,6 +47,10 @@ class Channels:
     def output(self) -> str:
         """What was written to STANDARD_OUT so far."""
         return self._shown.getvalue()
+
+    def heard_by(self, listener: Callable[[str], None]) -> None:
+        """Have each text for STANDARD_OUT told to somebody else as well."""
+        self._listener = listener
 
     def open(self, name: str, mode: Mode, variable: str, place: Place) -> OpenFile:
         """Open a file for a variable.
@@ -117,6 +122,8 @@ class Channels:
         if self._show_left < 0:
             raise ChannelFault("IRL553", what=STANDARD_OUT, most=f"{MOST_SHOWN:,} characters")
         self._shown.write(text)
+        if self._listener is not None:
+            self._listener(text)
         if self._told is not None:
             try:
                 self._told(None, text)

@@ -27,7 +27,7 @@ from irlx.solids.shape import Mesh, Solid
 from irlx.solids.simplify import fair_shares, simplified
 from irlx.solids.triangles import Triangles
 
-TRIANGLES = 60_000
+TRIANGLES = 100_000
 """Triangles of all meshes of a robot, and again of all obstacles; more are simplified."""
 
 _Drawn = tuple[Solid, Colour | None]

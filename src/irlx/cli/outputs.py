@@ -1,0 +1,73 @@
+"""Files that `irlx run` is asked to write, looked at before anything moves."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+__all__ = ["output_paths", "page_path", "written"]
+
+
+def output_paths(asked: Sequence[str | Path], inputs: tuple[Path, ...]) -> list[Path]:
+    """Files and folders to write, checked before anything moves.
+
+    Raises StreamError: IRL003 not writable, IRL004 unknown ending, IRL005 an input would be overwritten,
+    IRL720 a package that the format needs is missing.
+    """
+    from irlx.diagnostics import report
+    from irlx.report.replay.names import is_page
+    from irlx.streams.error import StreamError
+    from irlx.streams.formats import KNOWN_ENDINGS, format_of
+
+    paths = [Path(name) for name in asked]
+    for path in paths:
+        if is_page(path):
+            known_endings, helps = ", ".join(KNOWN_ENDINGS), "a page of the run is asked for with --html"
+            found = report("IRL004", help=helps, path=path, ending=path.suffix, known=known_endings)
+            raise StreamError(found)
+        known = format_of(path, "IRL004")
+        if any(_holds(path, source) for source in inputs):
+            raise StreamError(report("IRL005", option="-o", path=path))
+        known.check(path)
+    return paths
+
+
+def page_path(asked: str, inputs: tuple[Path, ...], outputs: Sequence[Path]) -> Path:
+    """The page to write, checked before anything moves.
+
+    Raises StreamError: IRL003 not writable, IRL005 an input would be overwritten, IRL012 a stream of this
+    run has that name, IRL013 another ending.
+    """
+    from irlx.diagnostics import report
+    from irlx.report.file_recording import partial_name
+    from irlx.report.replay.names import is_page
+    from irlx.streams.atomic import check_writable
+    from irlx.streams.error import StreamError
+
+    path = Path(asked)
+    if not is_page(path):
+        raise StreamError(report("IRL013", path=path, example=f"{path.stem or 'page'}.html"))
+    if any(_holds(path, source) for source in inputs):
+        raise StreamError(report("IRL005", option="--html", path=path))
+    # A stream has another ending, and yet two names may lead to one file.
+    taken = {os.path.realpath(name) for output in outputs for name in (output, partial_name(output))}
+    if {os.path.realpath(path), os.path.realpath(partial_name(path))} & taken:
+        raise StreamError(report("IRL012", path=path, what="a stream of this run"))
+    check_writable(path)
+    return path
+
+
+def _holds(path: Path, source: Path) -> bool:
+    """Whether an output is an input, or a folder that an input stands in."""
+    if not (path.exists() and source.exists()):
+        return False
+    return path.samefile(source) or source.resolve().is_relative_to(path.resolve())
+
+
+def written(outputs: Iterable[Path]) -> tuple[Path, ...]:
+    """Every name under which what is asked for may appear, also of a run that does not come to its end."""
+    from irlx.report.file_recording import partial_name
+
+    names = tuple(outputs)
+    return (*names, *map(partial_name, names))

@@ -1,0 +1,129 @@
+"""Gathers what a replay shows while a run goes on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irlx.blocks import PauseBlock, ToolBlock, WaitBlock
+from irlx.pacing.nearest_rows import FAR, NearestRows
+from irlx.report.replay.frames import MOST_FRAMES, Columns, Frames
+from irlx.report.segment import Segment
+from irlx.robot.limits import JointLimits, alike
+from irlx.streams.joint_stream import BlockRecord, StreamHeader
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+
+@dataclass
+class Gathered:
+    """What a run was like, so far.
+
+    Its `rows`; `records` of its blocks; `limits` and the tick from which on each is in force, and `tools`,
+    the blocks that set them; `waits` and the last tick of each; `pairs`, of which frames tell the nearest by
+    its number: link, obstacle or other link, margin (m); `messages` of the program, each with its tick.
+    """
+
+    frames: Frames
+    rows: int = 0
+    records: list[BlockRecord] = field(default_factory=list)
+    limits: list[tuple[int, JointLimits]] = field(default_factory=list)
+    tools: list[tuple[int, ToolBlock]] = field(default_factory=list)
+    waits: list[tuple[BlockRecord, int]] = field(default_factory=list)
+    pairs: dict[tuple[str, str, float], int] = field(default_factory=dict)
+    messages: list[tuple[int, str]] = field(default_factory=list)
+
+
+class Gathering:
+    """Keeps the frames of a run, at most `most` of them, and what happens in between."""
+
+    def __init__(self, header: StreamHeader, most: int = MOST_FRAMES) -> None:
+        self.found = Gathered(Frames(header.dt, most))
+        self._header = header
+        self._lines = {0: 0}
+        """Lines of the program by the ids of its blocks, 0 for those in other files."""
+        self._before: tuple[Array, Array] | None = None
+        """The last row of q (1, n) and of the tool (1, 7)."""
+
+    def take(self, segment: Segment) -> None:
+        """Take the next segment."""
+        found = self.found
+        if segment.record is not None:
+            self._take_record(segment.record)
+        rows = len(segment.q)
+        if not rows:
+            return
+        if not found.limits or not alike(found.limits[-1][1], segment.limits):
+            found.limits.append((segment.first_tick, segment.limits))
+        found.frames.take(self._columns(segment))
+        found.rows += rows
+        if found.waits and found.waits[-1][0].block.id == int(segment.block[-1]):
+            found.waits[-1] = (found.waits[-1][0], segment.first_tick + rows - 1)
+        self._before = segment.q[-1:].copy(), segment.tool[-1:].copy()
+
+    def say(self, text: str) -> None:
+        """Take what the program writes for the terminal, at this moment."""
+        tick = max(self.found.rows - 1, 0)
+        messages = self.found.messages
+        if messages and messages[-1][0] == tick:
+            messages[-1] = (tick, messages[-1][1] + text)
+        else:
+            messages.append((tick, text))
+
+    def _take_record(self, record: BlockRecord) -> None:
+        block, found = record.block, self.found
+        found.records.append(record)
+        own = block.origin.file == self._header.program_name
+        self._lines[block.id] = block.origin.line if own else 0
+        if isinstance(block, ToolBlock):
+            found.tools.append((found.rows, block))
+        elif isinstance(block, WaitBlock | PauseBlock):
+            found.waits.append((record, record.tick))
+
+    def _columns(self, segment: Segment) -> Columns:
+        q, tool, dt = segment.q, segment.tool, self._header.dt
+        rows = len(q)
+        q_before, tool_before = (q[:1], tool[:1]) if self._before is None else self._before
+        q_before, tool_before = np.vstack([q_before, q[:-1]]), np.vstack([tool_before, tool[:-1]])
+        room, distance, pair = self._nearest(rows, segment.nearest)
+        return Columns(
+            segment.first_tick + np.arange(rows, dtype=np.int64),
+            self._lines_of(segment.block),
+            q,
+            tool,
+            (q - q_before) / dt,
+            np.linalg.norm(tool[:, :3] - tool_before[:, :3], axis=1) / dt,
+            _angles(tool_before[:, 3:], tool[:, 3:]) / dt,
+            room,
+            distance,
+            pair,
+        )
+
+    def _lines_of(self, block: Integers) -> Integers:
+        ids, where = np.unique(block, return_inverse=True)
+        return np.array([self._lines.get(number, 0) for number in ids.tolist()], dtype=np.int64)[where]
+
+    def _nearest(self, rows: int, nearest: NearestRows | None) -> tuple[Array, Array, Integers]:
+        """Room, distance, and the number of the pair that is nearest in so many rows."""
+        far = np.full(rows, np.inf)
+        if nearest is None:
+            return far, far, np.full(rows, FAR, dtype=np.int64)
+        pairs = self.found.pairs
+        own = zip(nearest.pairs, nearest.margin.tolist(), strict=True)
+        known = [pairs.setdefault((*names, margin), len(pairs)) for names, margin in own]
+        # The last entry is what FAR points to.
+        numbers = np.array([*known, FAR], dtype=np.int64)[nearest.pair]
+        room = nearest.distance - np.append(nearest.margin, 0.0)[nearest.pair]
+        return room, nearest.distance, numbers
+
+
+def _angles(before: Array, after: Array) -> Array:
+    """Angles (M,) rad between orientations as unit quaternions (M, 4), whatever their signs.
+
+    Of quaternions p, q the angle between is 4 asin(|p - q| / 2), for the sign of q that is nearer.
+    """
+    apart = np.minimum(np.linalg.norm(after - before, axis=1), np.linalg.norm(after + before, axis=1))
+    return np.asarray(4.0 * np.arcsin(np.minimum(0.5 * apart, 1.0)))
