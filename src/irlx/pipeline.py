@@ -32,6 +32,7 @@ from irlx.pacing.pacer import Pacer
 from irlx.pacing.pauses import PauseAborted
 from irlx.pacing.resolution import EVERY_TICK, Resolution
 from irlx.pacing.situation import PacingSetup
+from irlx.pacing.watch import Watch
 from irlx.recorded import Recorded
 from irlx.scene.sightings import Sightings
 from irlx.streams.atomic import AtomicFile
@@ -43,7 +44,8 @@ Array = NDArray[np.float64]
 class Execution:
     """One run in progress: a program's blocks, and the pacer that executes them.
 
-    `channels` are what it reads and writes; `left_open` warns of files that were open at its end.
+    `channels` are what it reads and writes; `left_open` warns of files that were open at its end; `watch` is
+    told what is being worked on.
     """
 
     def __init__(
@@ -52,6 +54,7 @@ class Execution:
         resolution: Resolution = EVERY_TICK,
         planned_share: float = 1.0,
         sightings: Sightings | None = None,
+        watch: Watch | None = None,
     ) -> None:
         self.job = job
         cell = job.cell
@@ -68,6 +71,7 @@ class Execution:
             planned_share=planned_share,
             scene=replace(cell.scene, sightings=sightings),
             may_free=job.program.has_tolerances,
+            watch=watch,
         )
         self.kinematics = setup.kinematics
         self._pacer = Pacer(setup, self._locate)

@@ -20,6 +20,7 @@ from irlx.language import tree
 from irlx.language.analysis import Analysis, CellJoints, CellNames, DataListResolver, analyse
 from irlx.language.data_lists import ImportedList
 from irlx.language.modules import ImportedModule, ModuleProblem
+from irlx.language.move_count import move_count
 from irlx.language.source import decode_source
 from irlx.language.suppression import Ignore
 from irlx.language.tree.nodes import Name
@@ -96,6 +97,11 @@ class Program:
         """Whether any move in it, or in its modules, is WITH TOLERANCE."""
         roots = (self.tree, *(module.tree for module in self.modules))
         return any(isinstance(node, tree.WithTolerance) for root in roots for node in tree.walk(root))
+
+    @property
+    def move_count(self) -> int | None:
+        """Number of moves that it makes, None where only a run tells."""
+        return move_count(self.tree, (module.tree for module in self.modules))
 
     @property
     def all_lists(self) -> tuple[DataListFile, ...]:

@@ -19,6 +19,7 @@ from irlx.blocks import (
     ObstacleBlock,
     Origin,
     Question,
+    ReconfigureBlock,
     SignalBlock,
 )
 from irlx.cell.cell import Cell
@@ -65,6 +66,11 @@ class Recorded:
     def sha256(self) -> str:
         """Digest of that program."""
         return self.header.program_sha256
+
+    @property
+    def move_count(self) -> int:
+        """Number of its moves."""
+        return sum(isinstance(record.block, MoveBlock | ReconfigureBlock) for record in self.records)
 
     @property
     def has_tolerances(self) -> bool:

@@ -118,7 +118,7 @@ def test_the_terminal_tells_it(place, capsys):
     (first,) = [number for number, line in enumerate(lines) if line.startswith("slowed      ")]
     assert "s longer than programmed at " in lines[first]
     places = list(itertools.takewhile(lambda line: line.startswith("            line "), lines[first + 1 :]))
-    assert any(line.startswith("            line 5  ") and " of 1000 mm/s  " in line for line in places)
+    assert any(line.startswith("            line 5  ") and " of 1000 mm/s " in line for line in places)
 
 
 def test_json_has_the_events(place, capsys):

@@ -96,7 +96,7 @@ def test_a_run_with_all_there_is_to_tell() -> None:
         "p.irl: complete, verified, 1 s, slowed by 0.36 s, nearest 27.5 mm",
         "moves       2 (1 planned as a whole to keep limits)",
         "slowed      0.36 s longer than programmed at 2 places, the path is kept",
-        "            line 4  0.1-0.6 s  +0.31 s  250 of 1000 mm/s  a1 speed 20 deg/s",
+        "            line 4  0.1-0.6 s  +0.31 s  250 of 1000 mm/s  a1: 20 deg/s",
         "            line 5  0.6-1.1 s  +0.05 s  250 of 1000 mm/s",
         "path error  1.2e-15 m, 0 rad at worst",
         "limit use   position   100 %  rail  -500 of -500 mm   tick 7",

@@ -14,13 +14,15 @@ from typing import IO, TYPE_CHECKING, Any, cast
 
 from irlx.cli.execution import add_execution_options, add_plugin_option, import_plugins, standard_input
 from irlx.cli.outputs import output_paths, page_path, written
-from irlx.cli.program_text import ProgramText
+from irlx.cli.program_text import ProgramText, TypedInput
 
 if TYPE_CHECKING:
     from irlx.diagnostics import Diagnostic
     from irlx.job import Job
     from irlx.program import Program
     from irlx.report.outcome import Outcome
+    from irlx.report.progress import Progress
+    from irlx.verifier import Report
 
 _EXAMPLE = """\
 examples:
@@ -119,11 +121,13 @@ def command(options: argparse.Namespace) -> int:
     from irlx.report.run import RunError, RunInterrupted
     from irlx.running import execute_to_files
 
-    execution = Execution(job)
     try:
-        with _progress(options) as progress:
-            text.first = getattr(progress, "silence", None)
+        with _progress(options, job) as progress:
+            # A program whose text goes elsewhere does not disturb the line.
+            text.first = progress.silence if progress is not None and sys.stdout.isatty() else None
+            execution = Execution(job, watch=progress)
             run = execute_to_files(execution, outputs, progress, options.explain_tick, page)
+            reports = _reports(job, outputs, progress, options)
     except RunError as error:
         text.end_line()
         print_diagnostics(error.diagnostics)
@@ -139,7 +143,6 @@ def command(options: argparse.Namespace) -> int:
     if not options.quiet or run.diagnostics:
         text.end_line()
         print_diagnostics(run.diagnostics)
-    reports = {} if options.no_verify else {str(path): _verified(path, job) for path in outputs}
     broken = [found for name, report in reports.items() for found in report.diagnostics(name)]
     print_diagnostics(broken)
     if options.write_data and not broken:
@@ -170,7 +173,8 @@ def _prepared(options: argparse.Namespace, text: ProgramText) -> tuple[Job, list
 
         asked = options.tick, options.max_slow, options.max_steps, options.inputs
         output = None if options.json else cast("IO[str]", text)
-        told = options.files, standard_input(), output
+        typed = standard_input()
+        told = options.files, None if typed is None else cast("IO[bytes]", TypedInput(typed, text)), output
         job = prepare(given, options.cell, *asked, *told, pause_s=options.pause)
         program = job.program
         read = [*(found.path for found in program.data_lists), *(found.path for found in program.modules)]
@@ -200,14 +204,16 @@ def _default_output(job: Job) -> Path:
     return beside if os.access(beside.parent, os.W_OK) else Path(beside.name)
 
 
-def _progress(options: argparse.Namespace) -> AbstractContextManager[Any]:
+def _progress(options: argparse.Namespace, job: Job) -> AbstractContextManager[Progress | None]:
+    """What shows how the run comes on: nothing where nobody looks."""
     from contextlib import nullcontext
 
     if options.quiet or options.json or not sys.stderr.isatty():
         return nullcontext()
-    from irlx.report.progress import LiveProgress
+    from irlx.report.progress import Course, LineProgress, LiveProgress
 
-    return LiveProgress()
+    course = Course(job.tick_ns / 1e9, job.program.move_count, job.program.place)
+    return LineProgress(course) if os.environ.get("TERM") == "dumb" else LiveProgress(course)
 
 
 def _why(error: Diagnostic) -> str:
@@ -263,7 +269,19 @@ def _plain_diagnostics(diagnostics: Iterable[Diagnostic]) -> list[dict[str, obje
     return [plain_diagnostic(diagnostic) for diagnostic in diagnostics]
 
 
-def _verified(path: Path, job: Job) -> Any:
+def _reports(
+    job: Job, outputs: list[Path], progress: Progress | None, options: argparse.Namespace
+) -> dict[str, Report]:
+    """What the verifier says of each file, by its name."""
+    reports = {}
+    for path in () if options.no_verify else outputs:
+        if progress is not None:
+            progress.says(f"verifying {path}")
+        reports[str(path)] = _verified(path, job)
+    return reports
+
+
+def _verified(path: Path, job: Job) -> Report:
     from irlx.program import Program
     from irlx.verification import verify
 
@@ -275,7 +293,7 @@ def _verified(path: Path, job: Job) -> Any:
 def _print_summary(
     run: Outcome,
     outputs: list[Path],
-    reports: dict[str, Any],
+    reports: dict[str, Report],
     broken: list[Diagnostic],
     options: argparse.Namespace,
 ) -> None:

@@ -332,6 +332,7 @@ class Pacer:
     def _motion(self, moves: list[MoveBlock]) -> Motion:
         """The first motion from stop to stop that moves become."""
         block = moves[0]
+        self._tell_begin(block)
         self._check_links(self.locate(block.origin))
         for clause in block.limits:
             place = self.locate(clause.origin)
@@ -348,6 +349,10 @@ class Pacer:
             motion = move_along_path(situation, moves, in_force)
         self._programmed, self._programmed_in = motion.programmed, block.frame
         return motion
+
+    def _tell_begin(self, block: Block) -> None:
+        if self._setup.watch is not None:
+            self._setup.watch.begins(block, self.tick)
 
     def _note_asked(self, motion: Motion) -> None:
         """Where joints turn the tool in ways that nobody asks for, keep what was asked for last."""
@@ -397,6 +402,9 @@ class Pacer:
 
     def _reconfigure(self, block: ReconfigureBlock) -> MotionRows | None:
         place = self.locate(block.origin)
+        self._tell_begin(block)
+        if self._setup.watch is not None:
+            self._setup.watch.plans()
         situation = self._situation.in_frame(block.frame, place)
         check_spare(situation.options, situation.kinematics, None, self.locate)
         in_force = situation.in_force()

@@ -21,6 +21,7 @@ from irlx.pacing.slowing import Slowing, slowings
 from irlx.pacing.swinging import swings
 from irlx.pacing.touching import touching
 from irlx.pacing.walk import Halt, Walk, walk
+from irlx.pacing.watch import Watch, watched
 from irlx.transform.clearance import Closest
 from irlx.transform.step_bounds import BoundSource, StepLimiter
 from irlx.transform.tick import TickSolver
@@ -61,7 +62,7 @@ class PathMotion:
     """A motion from rest at posture `start` (n,) along a planned path.
 
     `term` is the posture term in force; ticks of `dt` s, the first of them `first_tick` of the stream;
-    `ticks_of` gives the ticks of a duration, or raises what too long a motion deserves.
+    `ticks_of` gives the ticks of a duration, or raises what too long a motion deserves; `watch` sees it done.
     """
 
     plan: PlannedPath
@@ -72,6 +73,7 @@ class PathMotion:
     ticks_of: Callable[[float], int]
     modifiers: Sequence[DemandModifier] = ()
     resolution: Resolution = EVERY_TICK
+    watch: Watch | None = None
 
     def demands_of(self, clock: Clock) -> list[Demand]:
         """Demands of the ticks of a clock, modifiers applied."""
@@ -117,6 +119,8 @@ def _paced(motion: PathMotion, model: Model, solver: TickSolver) -> PacedPath | 
     kept = walked.halt is None and broken is None
     if kept and not (motion.term.draws and _lags(walked.active)):
         return _as_walked(motion, walked)
+    if motion.watch is not None:
+        motion.watch.plans()
     try:
         found = plan_motion(model, _task(motion, undisturbed))
     except IrlxError:
@@ -165,7 +169,7 @@ def _walked(
         lambda demand: motion.term.at(demand.s, float(advance[demand.tick])),
         model.free,
         motion.start,
-        asked,
+        watched(asked, motion.watch),
         thorough,
         model.clearance,
     )

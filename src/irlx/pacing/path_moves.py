@@ -167,7 +167,7 @@ def _path_motion(situation: Situation, plan: PlannedChain, term: PostureTerm, pl
         return ticks_of_move(duration, dt, place)
 
     first, changes, fine = situation.tick + 1, setup.modifiers, setup.resolution
-    return PathMotion(plan, situation.q, term, dt, first, ticks_of, changes, fine)
+    return PathMotion(plan, situation.q, term, dt, first, ticks_of, changes, fine, setup.watch)
 
 
 def _rows(situation: Situation, block: MoveBlock, plan: PlannedChain, paced: PacedPath) -> MotionRows:

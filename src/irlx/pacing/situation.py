@@ -20,6 +20,7 @@ from irlx.pacing.notes import Notes
 from irlx.pacing.options import LimitsInForce, Options, limits_in_force
 from irlx.pacing.resolution import EVERY_TICK, Resolution
 from irlx.pacing.slowdown.model import Model
+from irlx.pacing.watch import Watch
 from irlx.robot.description import RobotDescription
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
@@ -38,7 +39,7 @@ class PacingSetup:
     A move may take `max_slow` times as long as programmed, and a tick; `inputs` are what the world says;
     `resolution` tells how finely motions are worked out; motions are planned with `planned_share`
     of each speed and acceleration limit; `scene` is what stands around;
-    `may_free`: moves to come may be WITH TOLERANCE.
+    `may_free`: moves to come may be WITH TOLERANCE; `watch` is told what is being worked on.
     """
 
     kinematics: Kinematics
@@ -53,6 +54,7 @@ class PacingSetup:
     planned_share: float = 1.0
     scene: Scene = field(default_factory=Scene)
     may_free: bool = False
+    watch: Watch | None = None
 
 
 @dataclass(frozen=True)

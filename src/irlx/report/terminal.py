@@ -178,15 +178,20 @@ def _slowed(events: Sequence[Slowed], units: dict[str, str]) -> list[str]:
 
 def _slowing(event: Slowed, units: dict[str, str]) -> tuple[str, ...]:
     unit, scale = ("deg", degrees(1.0)) if event.turns else ("mm", 1000.0)
-    requested, achieved = (f"{value * scale:.4g}" for value in (event.requested, event.achieved))
+    requested, achieved = (_rate(value * scale) for value in (event.requested, event.achieved))
     bound = f"{joint_value(event.bound, units.get(event.joint, 'rad'), PER.get(event.kind, ''))}"
     return (
         f"line {event.line}",
         f"{event.first_time:.6g}-{event.last_time:.6g} s",
         f"+{event.lost:.3g} s",
         f"{achieved} of {requested} {unit}/s",
-        f"{event.joint} {event.kind} {bound}" if event.joint else "",
+        f"{event.joint}: {bound}" if event.joint else "",
     )
+
+
+def _rate(value: float) -> str:
+    """A speed in as few digits as tell it."""
+    return f"{value:.0f}" if value >= 100.0 else f"{value:.3g}"
 
 
 def _returns(found: Sequence[Return], units: Sequence[str], names: Sequence[str]) -> list[str]:
