@@ -11,9 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from irlx.cell.cell import Cell
-from irlx.cell.errors import CellError
-from irlx.cell.load import load_cell
 from irlx.diagnostics import Diagnostic, IrlxError, Place, report
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.diagnostics.extra import require_extra
@@ -23,12 +20,12 @@ from irlx.report.plot.make_curves import Subject, curves_of
 from irlx.report.plot.quantity import JOINT_QUANTITIES, QUANTITIES, Quantity
 from irlx.streams.formats import read_stream
 from irlx.streams.joint_stream import JointStream
-from irlx.verification import looked_up
 
 if TYPE_CHECKING:
-    # Not imported: a run brings along all that made it, and matplotlib is an extra.
+    # Not imported: a run brings along all that made it, matplotlib is an extra, and joints need no cell.
     from matplotlib.figure import Figure
 
+    from irlx.cell.cell import Cell
     from irlx.report.run import Run
 
 PathLike = str | os.PathLike[str]
@@ -88,9 +85,10 @@ def plotted(
     most_joints: int | None = None,
 ) -> Plotted:
     """Curves of one or two sources; see `plot`. Of more joints than `most_joints` those that matter most."""
-    given = None if cell is None else load_cell(Path(cell))
     wanted = QUANTITIES if show is None else quantities_named(show)
-    subjects = [_subject(source, given) for source in sources]
+    given = None if cell is None else _loaded(Path(cell))
+    asks = Quantity.SINGULAR in wanted or Quantity.CLEARANCE in wanted
+    subjects = [_subject(source, given, asks) for source in sources]
     _check_joints(subjects)
     span = _window(subjects, window)
     chosen = None if joints is None else joints_named(joints, subjects[0].stream.header.joint_names)
@@ -118,8 +116,14 @@ def quantities_named(names: Collection[str]) -> tuple[Quantity, ...]:
     return tuple(quantity for quantity in QUANTITIES if quantity.value in names)
 
 
-def _subject(source: Run | PathLike, cell: Cell | None) -> Subject:
-    """A source with its robot and scene, as far as they are known."""
+def _loaded(path: Path) -> Cell:
+    from irlx.cell.load import load_cell
+
+    return load_cell(path)
+
+
+def _subject(source: Run | PathLike, cell: Cell | None, asks: bool) -> Subject:
+    """A source with its robot and scene, as far as they are known and anything `asks` for them."""
     if isinstance(source, str | os.PathLike):
         path = Path(source)
         stream, name, beside, clearances = read_stream(path), path.name, path.parent, None
@@ -129,14 +133,24 @@ def _subject(source: Run | PathLike, cell: Cell | None) -> Subject:
     if cell is not None:
         _check_cell(stream, cell)
         return Subject(stream, name, cell.robot, cell.scene, clearances)
-    reference = looked_up(stream.header, beside, None)
+    if not asks:
+        return Subject(stream, name, clearances=clearances)
+    from irlx.verification import looked_up
+
+    try:
+        reference = looked_up(stream.header, beside, None)
+    except IrlxError as error:
+        # A robot whose package is missing: its joints can be drawn all the same.
+        return Subject(stream, name, clearances=clearances, why_unknown=error.reason.message)
     if reference is None:
-        return Subject(stream, name, None, None, clearances)
+        return Subject(stream, name, clearances=clearances)
     return Subject(stream, name, reference.robot, reference.scene, clearances)
 
 
 def _check_cell(stream: JointStream, cell: Cell) -> None:
     """Raises CellError, IRL727, for a cell whose robot has other joints than the stream."""
+    from irlx.cell.errors import CellError
+
     expected, found = stream.header.joint_names, cell.robot.joint_names
     if expected != found:
         told: dict[str, Any] = {"expected": ", ".join(expected), "found": ", ".join(found)}

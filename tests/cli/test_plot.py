@@ -128,6 +128,18 @@ def test_robot_by_the_cell_beside_the_stream_or_by_cell(inside, folder, run):
     assert inside(*asked).stderr == ""
 
 
+def test_a_robot_whose_package_is_missing(inside, folder, monkeypatch):
+    made = DrawnStream()
+    made.move(np.full((5, 2), 0.1))
+    write_stream(made.stream(robot_model="panda"), folder / "p.irdata")
+    monkeypatch.setattr("irlx.cell.external.robot_data_folder", lambda: None)
+    done = inside("plot", "p.irdata", "--show", "position,singular")
+    assert done.returncode == 0
+    assert "turn position, deg" in done.stdout
+    assert done.stderr.startswith("p.irdata: warning IRL019: singular is left out: ")
+    assert "example-robot-data" in done.stderr
+
+
 def test_of_many_joints_the_busiest(inside, folder, run):
     run.save(folder / "line.npz")
     done = inside("plot", "line.npz", "--show", "position")

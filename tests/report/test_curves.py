@@ -1,5 +1,6 @@
 """Curves over the rows of a stream, against closed forms and finite differences."""
 
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -8,14 +9,16 @@ from scipy.spatial.transform import Rotation
 
 from clearance_streams import StreamMaker, obstacle, scene_of
 from drawn_streams import DT, LIMITS, DrawnStream, along_y, square_and_slow, trapezoid
-from irlx.blocks import JointRange, LimitKind, ToolBlock
+from irlx.blocks import JointRange, LimitKind, LinkFrame, ToolBlock
 from irlx.report.clearance_curve import clearances_over
-from irlx.report.curves import limits_over, outline_of_stream, smallest_singular_values, tool_rates
+from irlx.report.curves import limits_over, outline_of_stream, tool_rates
 from irlx.report.programmed_pace import programmed_pace
+from irlx.report.singularity import smallest_singular_values
 from irlx.robot.description import Joint, JointKind, RobotDescription
 from irlx.solids.shape import Solid, Sphere
 from irlx.streams import BlockRecord
 from irlx.verifier.geometry.forward import forward
+from irlx.verifier.geometry.link_poses import link_poses
 from machines import machine
 
 pytestmark = pytest.mark.req("REP-03")
@@ -74,10 +77,45 @@ def test_singular_values_by_differences(tool):
         maker.records.append(BlockRecord(maker.tick, block))
     maker.move(rng.uniform(-1.0, 1.0, (3, 7)))
     stream = maker.stream()
-    found = smallest_singular_values(robot, outline_of_stream(stream), stream.q, stream.block)
+    found = smallest_singular_values(robot, stream.records, stream.ticks, stream.q)
     offset = np.zeros(3) if tool is None else np.array(tool)
-    due = [np.linalg.svd(differences(robot, q, offset), compute_uv=False)[-1] for q in stream.q]
+    # The tool is in force behind the row that stood when it was set.
+    offsets = [np.zeros(3), *[offset] * 4]
+    pairs = zip(stream.q, offsets, strict=True)
+    due = [np.linalg.svd(differences(robot, q, own), compute_uv=False)[-1] for q, own in pairs]
     np.testing.assert_allclose(found, due, rtol=1e-6)
+
+
+def test_singular_values_in_a_frame_that_the_other_hand_carries():
+    robot = machine("dual14").robot
+    rng = np.random.default_rng(12)
+    maker = StreamMaker(robot, rng.uniform(-0.5, 0.5, 14))
+    maker.move(rng.uniform(-0.5, 0.5, (2, 14)))
+    frame = LinkFrame("pipe", robot.carriers[0], (0.1, 0.0, 0.2), (0.0, 0.0, 0.0, 1.0))
+    (record,) = maker.records
+    maker.records[0] = BlockRecord(record.tick, replace(record.block, frame=frame))
+    stream = maker.stream()
+    found = smallest_singular_values(robot, stream.records, stream.ticks, stream.q)
+    due = [np.linalg.svd(seen_differences(robot, q, frame), compute_uv=False)[-1] for q in stream.q]
+    np.testing.assert_allclose(found, due, rtol=1e-5)
+
+
+def seen_differences(robot, q, frame):
+    """Jacobian (6, n) of the tool as a frame on a link sees it, by central differences."""
+    step, columns = 1e-6, []
+
+    def seen(posture):
+        position, rotation = forward(robot, posture[None])
+        at, turned = (part[0] for part in link_poses(robot, posture[None], (frame.link,))[frame.link])
+        at = at + turned @ np.array(frame.position)
+        return turned.T @ (position[0] - at), turned.T @ rotation[0]
+
+    for joint in range(q.size):
+        unit = step * np.eye(q.size)[joint]
+        (one, ahead), (other, behind) = seen(q + unit), seen(q - unit)
+        turn = Rotation.from_matrix(ahead @ behind.T).as_rotvec()
+        columns.append(np.concatenate([(one - other) / robot.reach, turn]) / (2.0 * step))
+    return np.array(columns).T
 
 
 def differences(robot, q, offset):

@@ -1,4 +1,4 @@
-"""Curves over the rows of a stream that figures and pages share: limits in force, tool rates, singularity."""
+"""Curves over the rows of a stream that figures and pages share: limits in force, rates of the tool."""
 
 from __future__ import annotations
 
@@ -7,20 +7,14 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.robot.description import RobotDescription
-from irlx.robot.kinematics import Kinematics
 from irlx.streams.joint_stream import JointStream
 from irlx.streams.scan import scan_of
-from irlx.transform.measures.smallest_singular_value import SmallestSingularValue
 from irlx.verifier.findings.finding import FAILED
-from irlx.verifier.frames import frames_of
 from irlx.verifier.limits import LimitsInForce, limits_in_force
 from irlx.verifier.moves import check_blocks, moves_of
 from irlx.verifier.outline import Outline, outline_of
-from irlx.verifier.tools import tools_of
 
 Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 
 def outline_of_stream(stream: JointStream) -> Outline:
@@ -56,33 +50,3 @@ def tool_rates(tool: Array, dt: float) -> tuple[Array, Array]:
     speed[1:] = np.linalg.norm(steps[:, :3], axis=1) / dt
     turn[1:] = 4.0 * np.arcsin(np.clip(0.5 * chord, 0.0, 1.0)) / dt
     return speed, turn
-
-
-def smallest_singular_values(robot: RobotDescription, outline: Outline, q: Array, block: Integers) -> Array:
-    """Smallest singular value (K,) of the tool Jacobian in postures q (K, n) of the blocks (K,).
-
-    The tool is the one in force there, seen from the frame in which the block leads it, and the rows are
-    those of the robot's task, lengths divided by its reach: `SmallestSingularValue`, without unit. The start
-    counts as part of the first motion.
-    """
-    tools, frames = tools_of(outline.records), frames_of(outline.records, robot).of_block
-    set_tools = [record.block for record in outline.records if record.block.id in set(tools.ids.tolist())]
-    known: dict[tuple[int, object], SmallestSingularValue] = {}
-    world = Kinematics(robot)
-
-    def measure(number: int, block: int) -> SmallestSingularValue:
-        frame = frames.get(block)
-        key = number, frame
-        if key not in known:
-            kinematics = world
-            if number:
-                own = sorted(set_tools, key=lambda item: item.id)[number - 1]
-                kinematics = world.with_tool(own.position, own.orientation)  # type: ignore[attr-defined]
-            known[key] = SmallestSingularValue(kinematics.relative_to(frame) if frame else kinematics)
-        return known[key]
-
-    motions = outline.ids[outline.ids > 0]
-    block = np.where(block == 0, motions[:1] if motions.size else 0, block)
-    numbers = tools.numbers(block).tolist()
-    pairs = zip(q, numbers, block.tolist(), strict=True)
-    return np.array([measure(number, own).value(posture) for posture, number, own in pairs])

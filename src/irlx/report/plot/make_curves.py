@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 
 from irlx.blocks import MoveBlock, ReconfigureBlock
 from irlx.diagnostics import Diagnostic, Place, report
-from irlx.report.clearance_curve import clearances_over
 from irlx.report.clearances import Clearances
-from irlx.report.curves import limits_over, outline_of_stream, smallest_singular_values, tool_rates
+from irlx.report.curves import limits_over, outline_of_stream, tool_rates
 from irlx.report.plot.curves import Bounds, Curves, LimitSpan, MoveMark, Track
 from irlx.report.plot.quantity import JOINT_QUANTITIES, Quantity
 from irlx.report.programmed_pace import ProgrammedPace, programmed_pace
@@ -42,13 +41,14 @@ _TURNING = np.radians(0.1)
 @dataclass(frozen=True, eq=False)
 class Subject:
     """What is to be drawn: a stream under a `name`; its `robot` and the `scene` around that, None where not
-    known; `clearances` of all its rows, where the run itself has told them."""
+    known, and `why_unknown`; `clearances` of all its rows, where the run itself has told them."""
 
     stream: JointStream
     name: str
     robot: RobotDescription | None = None
     scene: Scene | None = None
     clearances: Clearances | None = None
+    why_unknown: str = "its robot is not known; --cell names its cell"
 
 
 def curves_of(
@@ -194,10 +194,12 @@ def _tracks(
         if quantity is Quantity.CLEARANCE and subject.clearances is not None:
             found: Track | None = _clearance_track(stream, subject.clearances, inside)
         elif robot is None:
-            notes.append(left_out(subject.name, quantity, "its robot is not known; --cell names its cell"))
+            notes.append(left_out(subject.name, quantity, subject.why_unknown))
             continue
         elif quantity is Quantity.SINGULAR:
-            values = smallest_singular_values(robot, outline, stream.q[rows], stream.block[rows])
+            from irlx.report.singularity import smallest_singular_values
+
+            values = smallest_singular_values(robot, outline.records, stream.ticks[rows], stream.q[rows])
             found = Track("smallest singular value", "", stream.t[rows], values)
         else:
             found = _measured_clearance(subject, robot, outline, rows, notes)
@@ -219,6 +221,8 @@ def _measured_clearance(
         cause = "the obstacles of its cell are not known; --cell names its cell"
         notes.append(left_out(subject.name, Quantity.CLEARANCE, cause))
         return None
+    from irlx.report.clearance_curve import clearances_over
+
     try:
         found = clearances_over(outline, robot, subject.scene, subject.stream.q[rows], rows)
     except ValueError as cause:

@@ -20,8 +20,8 @@ from irlx.report.replay.events import replay_events
 from irlx.report.replay.frames import Columns
 from irlx.report.replay.gathering import Gathered
 from irlx.report.replay.scenery import Scenery
-from irlx.report.replay.singular import smallest_singular_values
 from irlx.report.replay.source import ReplaySource
+from irlx.report.singularity import smallest_singular_values
 from irlx.report.summary import Summary
 from irlx.report.terminal import summary_text
 from irlx.robot.limits import JointLimits
@@ -86,7 +86,7 @@ def _course(replay: Replay) -> Plain:
     columns = found.frames.columns
     tools = [{"tick": 0, "xyz": (0.0, 0.0, 0.0), "quat": (0.0, 0.0, 0.0, 1.0)}]
     tools += [{"tick": tick, "xyz": tool.position, "quat": tool.orientation} for tick, tool in found.tools]
-    singular = smallest_singular_values(replay.source.cell.robot, columns.tick, columns.q, found.tools)
+    singular = smallest_singular_values(replay.source.cell.robot, found.records, columns.tick, columns.q)
     errors = [one for one in replay.diagnostics if one.is_error]
     return {
         "frames": {**_frames(columns), "singular": _rounded(singular, _FINE)},
