@@ -135,7 +135,7 @@ def _outputs(options: argparse.Namespace) -> list[Path]:
         if path.suffix.lower() not in PICTURES:
             raise IrlxError(report("IRL004", path=path, ending=path.suffix, known=", ".join(PICTURES)))
         if path.exists() and any(given.exists() and path.samefile(given) for given in inputs):
-            raise IrlxError(report("IRL005", path=path))
+            raise IrlxError(report("IRL005", option="-o", path=path))
     if paths:
         require_extra("irlx plot -o", "plot", "matplotlib")
     for path in paths:
