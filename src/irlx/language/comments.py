@@ -8,7 +8,7 @@ from functools import lru_cache
 from irlx.diagnostics import Span
 from irlx.language.keywords import keyword_table
 
-__all__ = ["opens_another", "repaired"]
+__all__ = ["TO_IRLX", "opens_another", "repaired", "speaks_to_irlx"]
 
 _MOST = 20
 # Texts and comments, so that a sign inside one of them opens nothing.
@@ -17,6 +17,15 @@ _PARTS = re.compile(
 )
 _LATER_OPENING = re.compile(r"\n[^\n]*?(\{|\(\*)")
 _WORD = re.compile(r"[^\W\d_]\w*")
+TO_IRLX = re.compile(
+    r"(?:\{|\(\*)\s*irlx\s*:\s*(?:ignore\b(?P<codes>.*?)|.*?)(?:\}|\*\))", re.IGNORECASE | re.DOTALL
+)
+"""A comment that speaks to irlx; `codes` is what it asks to ignore, None where it asks for something else."""
+
+
+def speaks_to_irlx(comment: str) -> bool:
+    """Whether a comment is meant for irlx, such as one that asks to ignore a warning."""
+    return TO_IRLX.fullmatch(comment) is not None
 
 
 def opens_another(comment: str) -> int | None:

@@ -10,6 +10,7 @@ from irlx.diagnostics import CATALOGUE, Diagnostic, Place, Severity, SourceText,
 from irlx.diagnostics.codes.lints import LINTS
 from irlx.diagnostics.codes.pacing import PACING
 from irlx.diagnostics.diagnostic import near_matches
+from irlx.language.comments import TO_IRLX
 from irlx.language.data_lists import ImportedList, Imports
 from irlx.language.lexing import lex
 from irlx.language.parser import Parse
@@ -25,9 +26,6 @@ __all__ = [
     "without_ignored",
 ]
 
-_COMMENT = re.compile(
-    r"(?:\{|\(\*)\s*irlx\s*:\s*(?:ignore\b(?P<codes>.*?)|.*?)(?:\}|\*\))", re.IGNORECASE | re.DOTALL
-)
 BY_MOTION = frozenset(entry.id for entry in PACING if entry.severity is not Severity.ERROR)
 """Codes that only motion gives: of a run, or of a dry run."""
 _FOUND_LATER = frozenset({"IRL363", "IRL591"}) | BY_MOTION
@@ -122,7 +120,7 @@ def unused_finding(ignore: Ignore) -> Diagnostic:
 
 def _read(source: SourceText, span: Span) -> Iterator[Ignore | Diagnostic]:
     """What one comment asks for; nothing where it does not speak to irlx."""
-    comment = _COMMENT.fullmatch(source.text, span.start, span.end)
+    comment = TO_IRLX.fullmatch(source.text, span.start, span.end)
     if comment is None:
         return
     if comment["codes"] is None:
