@@ -12,11 +12,38 @@ import sys
 from collections.abc import Sequence
 
 from irlx._version import __version__
-from irlx.cli import blocks, check, conformance, convert, explain, fmt, new, plot, robots, run, verify
+from irlx.cli import (
+    blocks,
+    check,
+    completion,
+    conformance,
+    convert,
+    explain,
+    fmt,
+    new,
+    plot,
+    robots,
+    run,
+    verify,
+)
 from irlx.cli.output import exit_code, print_diagnostics
+from irlx.cli.parser import CommandParser
 from irlx.diagnostics import IrlxError, report
 
-_COMMANDS = (run, check, fmt, blocks, verify, plot, convert, robots, new, explain, conformance)
+_COMMANDS = (
+    run,
+    check,
+    fmt,
+    blocks,
+    verify,
+    plot,
+    convert,
+    robots,
+    new,
+    explain,
+    completion,
+    conformance,
+)
 _EXAMPLE = """\
 examples:
   irlx run programs/koch/square.irl
@@ -27,23 +54,32 @@ examples:
 
 def build_parser() -> argparse.ArgumentParser:
     """Parser of the whole command line."""
-    parser = argparse.ArgumentParser(
+    parser = CommandParser(
         prog="irlx",
         description="Run robot programs in the irlx profile of IRL; joint streams come out, verified.",
         epilog=_EXAMPLE,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--version", action="version", version=f"irlx {__version__}")
-    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    parser.set_defaults(command=None)
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND")
     for module in _COMMANDS:
         module.add_parser(commands)
+    parser.commands = commands
     return parser
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command; returns its exit code. Raises SystemExit for usage errors and --help."""
-    options = build_parser().parse_args(arguments)
+    """Run one command, or print the help without one; returns its exit code.
+
+    Raises SystemExit for --help and what argparse refuses.
+    """
+    parser = build_parser()
     try:
+        options = parser.parse_args(arguments)
+        if options.command is None:
+            parser.print_help()
+            return 0
         code = options.command(options)
         # Here and not at the end of the process: a reader that went away must be met inside this fence.
         sys.stdout.flush()

@@ -24,6 +24,8 @@ COMMAND = (
         "{first} and {second} cannot be drawn over each other: {cause}",
         "compare streams of robots with the same joints",
     ),
+    error("IRL016", "irlx has no command '{name}'{near}", "irlx --help lists the commands"),
+    error("IRL017", "{command} has no option {option}{near}", "{command} --help lists its options"),
     warning("IRL019", "{what} is left out: {cause}"),
     error(
         "IRL090",
