@@ -10,7 +10,7 @@ that it reads, `input.txt` for its standard input), and one of
 - `check.txt`: the program is accepted, with these warnings in the same form, none where the file is
   empty; lints do not count.
 
-The cell is the nearest `cell.toml`, in the folder of the case or above it, up to that of all cases.
+The cell is the nearest `cell.toml`, in the folder of the case or above it.
 """
 
 from __future__ import annotations
@@ -74,9 +74,8 @@ def find_cases(root: Path) -> list[Case]:
 def _case(root: Path, folder: Path) -> Case:
     present = [name for name in EXPECTATIONS if (folder / name).is_file()]
     fault = "" if len(present) == 1 else f"needs one of {', '.join(EXPECTATIONS)}, has {len(present)}"
-    above = [folder, *folder.parents]
-    below_root = above[: above.index(root) + 1] if root in above else above
-    cells = (place / "cell.toml" for place in below_root)
+    # Also above the root, so that one area of a suite can be run by itself.
+    cells = (place / "cell.toml" for place in (folder, *folder.parents))
     cell = next((path for path in cells if path.is_file()), None)
     name = folder.relative_to(root).as_posix()
     return Case(folder, name, cell, present[0] if present else "", fault)

@@ -223,7 +223,7 @@ def test_a_program_with_the_ending_of_a_stream_is_taken_for_one(inside, folder, 
 
 
 @pytest.mark.parametrize(
-    "arguments", [[], ["fly"], ["run"], ["run", "p.irl", "--tick", "fast"], ["run", "--x"]]
+    "arguments", [["convert"], ["verify"], ["run"], ["run", "p.irl", "--tick", "fast"], ["completion", "cmd"]]
 )
 def test_usage_errors(capsys, arguments):
     with pytest.raises(SystemExit) as caught:

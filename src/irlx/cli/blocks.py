@@ -10,7 +10,7 @@ from typing import Any
 from irlx.cli.execution import add_execution_options, standard_input
 from irlx.cli.output import encodable
 
-_EXAMPLE = "example:\n  irlx blocks programs/koch/square.irl\n"
+_EXAMPLE = "examples:\n  irlx blocks programs/koch/square.irl\n"
 
 
 def add_parser(commands: Any) -> None:

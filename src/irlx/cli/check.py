@@ -13,7 +13,8 @@ from irlx.diagnostics.rendering import MACHINE_FORMATS
 _EXAMPLE = """\
 examples:
   irlx check programs/koch/square.irl --cell programs/koch/square.toml
-  irlx check programs/koch/square_slow.irl --motion
+  irlx check programs/koch/line.irl --motion
+  irlx check programs/koch/square.irl programs/koch/line.irl --format json
 """
 
 

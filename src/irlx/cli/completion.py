@@ -79,7 +79,11 @@ def _complete(name: str, action: argparse.Action) -> None:
     elif called in _FOLDERS:
         action.complete = shtab.DIRECTORY  # type: ignore[attr-defined]
     elif patterns:
-        action.complete = shtab.glob(*_expanded(patterns))  # type: ignore[attr-defined]
+        files = shtab.glob(*_expanded(patterns))
+        if len(patterns) == 1 and _STREAMS not in patterns:
+            # zsh takes one pattern in parentheses, which is what shtab writes, for a qualifier.
+            files = {**files, "zsh": f"_files -g '{patterns[0]}'"}
+        action.complete = files  # type: ignore[attr-defined]
 
 
 def _expanded(patterns: Sequence[str]) -> Iterator[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-_EXAMPLE = "example:\n  irlx conformance tests/conformance\n"
+_EXAMPLE = "examples:\n  irlx conformance tests/conformance/lexical\n"
 
 
 def add_parser(commands: Any) -> None:

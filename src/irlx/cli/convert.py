@@ -9,8 +9,8 @@ from typing import Any
 _EXAMPLE = """\
 examples:
   irlx convert programs/koch/square.irdata -o square.npz -o square.jsonl
-  irlx convert weld.irdata -o weld.script
-  irlx convert weld.irdata -o weld.csv --to robodk
+  irlx convert programs/koch/square.irdata -o square.src
+  irlx convert programs/koch/square.irdata -o square_robodk.csv --to robodk
 """
 _TARGETS = ("urscript", "krl", "rapid", "robodk")
 """Those of `irlx.exporters`, whose numeric libraries the help does without."""

@@ -10,9 +10,12 @@ from typing import Any
 
 from irlx.diagnostics import IrlxError
 
-_EXAMPLE = (
-    "examples:\n  irlx fmt programs/koch/square.irl\n  irlx fmt --check *.irl\n  irlx fmt --diff p.irl\n"
-)
+_EXAMPLE = """\
+examples:
+  irlx fmt programs/koch/square.irl
+  irlx fmt --check programs/koch/square.irl programs/combined/points.dat
+  irlx fmt --diff programs/koch/line.irl
+"""
 _STANDARD_INPUT = "-"
 
 

@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 
 _EXAMPLE = """\
 examples:
-  irlx new weld --urdf my_arm.urdf --tip flange
-  irlx new first --robot arm7
+  irlx new first --robot planar3
+  irlx new weld --urdf src/irlx/cell/robots/arm7.urdf --tip tool
 """
 
 

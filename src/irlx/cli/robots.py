@@ -19,7 +19,7 @@ _EXAMPLE = """\
 examples:
   irlx robots
   irlx robots arm7
-  irlx robots --check my_arm.urdf --tip flange
+  irlx robots --check src/irlx/cell/robots/arm7.urdf
 """
 _KINDS = ("position", "speed", "acceleration")
 _MOST_ALIKE = 3

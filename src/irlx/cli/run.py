@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 _EXAMPLE = """\
 examples:
   irlx run programs/koch/square.irl
-  irlx run programs/koch/square.irl --tick 10 -o square.npz -o square.csv
+  irlx run programs/koch/square.irl --tick 25 -o square.npz -o square.csv
   irlx run programs/koch/square_cyclic.irl --html square.html
   irlx run programs/koch/square.irdata --cell programs/koch/square.toml
 """

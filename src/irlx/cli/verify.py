@@ -7,7 +7,7 @@ import json
 import sys
 from typing import Any
 
-_EXAMPLE = "example:\n  irlx verify programs/koch/square.irdata --program programs/koch/square.irl\n"
+_EXAMPLE = "examples:\n  irlx verify programs/koch/square.irdata --program programs/koch/square.irl\n"
 
 
 def add_parser(commands: Any) -> None:
