@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, TextIO
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
 _COLOURS = {"error": "\x1b[1;31m", "warning": "\x1b[1;33m", "info": "\x1b[1;36m"}
 _PLAIN = "\x1b[0m"
 _MARKS = {True: "\N{CHECK MARK} ", False: "\N{BALLOT X} "}
+_MARK = re.compile(r"^( +\| +)(\^+)$", re.MULTILINE)
+"""The line of an excerpt that marks a place in the one above."""
 _USAGE = frozenset({"IRL707", "IRL720"})
 """Codes beyond IRL0xx and IRL6xx that say that a file was wrongly named, or a package is missing."""
 
@@ -30,13 +33,19 @@ def coloured(stream: object) -> bool:
 
 def print_diagnostics(diagnostics: Iterable[Diagnostic]) -> None:
     """Print each diagnostic with its place and excerpt on stderr."""
-    colour = coloured(sys.stderr)
+    render = _in_colours if coloured(sys.stderr) else render_text
     for diagnostic in diagnostics:
-        text = render_text(diagnostic)
-        if colour:
-            words = f"{diagnostic.severity.value} {diagnostic.code}"
-            text = text.replace(words, f"{_COLOURS[diagnostic.severity.value]}{words}{_PLAIN}", 1)
-        print(encodable(text, sys.stderr), file=sys.stderr)
+        print(encodable(render(diagnostic), sys.stderr), file=sys.stderr)
+
+
+def _in_colours(diagnostic: Diagnostic) -> str:
+    """Text of a diagnostic for a terminal: its code and the mark below the excerpt stand out."""
+    from irlx.cli.painting import painted_line
+
+    colour = _COLOURS[diagnostic.severity.value]
+    words = f"{diagnostic.severity.value} {diagnostic.code}"
+    text = render_text(diagnostic, painted_line).replace(words, f"{colour}{words}{_PLAIN}", 1)
+    return _MARK.sub(rf"\g<1>{colour}\g<2>{_PLAIN}", text)
 
 
 def print_lines(lines: Sequence[Line], stream: TextIO | None = None) -> None:

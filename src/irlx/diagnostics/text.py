@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import TypeAlias
 from unicodedata import combining, east_asian_width
 
 from irlx.diagnostics.diagnostic import Diagnostic
-from irlx.diagnostics.place import Place
+from irlx.diagnostics.place import Place, SourceText
+
+__all__ = ["Painter", "render_text"]
 
 TAB_WIDTH = 4
+Painter: TypeAlias = Callable[[SourceText, int], str]
+"""A text and the number of a line to that line as it is shown: as wide, in colours."""
 
 
 def _display_width(text: str) -> int:
@@ -17,7 +23,7 @@ def _display_width(text: str) -> int:
     )
 
 
-def _excerpt(place: Place) -> list[str]:
+def _excerpt(place: Place, paint: Painter) -> list[str]:
     """Source line of a place with carets below the span's part on that line."""
     if place.text is None or place.span is None:
         return []
@@ -27,18 +33,18 @@ def _excerpt(place: Place) -> list[str]:
     lead = _display_width(source[: column - 1])
     width = max(_display_width(source[column - 1 : column - 1 + length]), 1)
     number = str(line)
-    shown = source.replace("\t", " " * TAB_WIDTH)
+    shown = paint(place.text, line).replace("\t", " " * TAB_WIDTH)
     return [f" {number} | {shown}", f" {' ' * len(number)} | {' ' * lead}{'^' * width}"]
 
 
-def render_text(diagnostic: Diagnostic) -> str:
-    """Text of one diagnostic, several lines, without colour; ends without a line end."""
+def render_text(diagnostic: Diagnostic, paint: Painter = SourceText.line_text) -> str:
+    """Text of one diagnostic, several lines, in the colours of `paint`, if any; ends without a line end."""
     lines = [str(diagnostic)]
     if diagnostic.place is not None:
-        lines += _excerpt(diagnostic.place)
+        lines += _excerpt(diagnostic.place, paint)
     for related in diagnostic.related:
         lines.append(f"  {related.place}: {related.message}")
-        lines += _excerpt(related.place)
+        lines += _excerpt(related.place, paint)
     if diagnostic.help:
         lines.append(f"  help: {diagnostic.help}")
     return "\n".join(lines)
