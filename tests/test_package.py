@@ -55,6 +55,7 @@ def test_metadata(wheel):
     assert "Name: irlx\n" in metadata
     assert "License-Expression: Apache-2.0" in metadata
     assert "irlx = irlx.cli.main:entry_point" in entries
+    assert "[pygments.lexers]\nirl = irlx.language.highlight.pygments_lexer:IrlLexer\n" in entries
 
 
 def test_the_unpacked_wheel_runs(wheel, tmp_path):

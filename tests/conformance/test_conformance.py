@@ -132,3 +132,8 @@ def test_folders_that_are_no_cases(copied, tmp_path, capsys):
     (case,) = [case for case in find_cases(copied) if case.name == "types/index_outside"]
     assert "needs one of" in run_case(case).reason
     assert not update_case(case)
+
+
+def test_one_area_has_the_cell_of_all():
+    whole = {case.folder: case.cell for case in CASES if case.name.startswith("lexical/")}
+    assert {case.folder: case.cell for case in find_cases(ROOT / "lexical")} == whole
