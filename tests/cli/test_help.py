@@ -15,6 +15,8 @@ SERVING = {"view"}
 """Commands that go on until somebody stops them: their examples are only parsed here."""
 SEEN_BY_EXAMPLES = ("programs", "tests/conformance", "src/irlx/cell/robots")
 """Folders of the repository that examples name."""
+RUN_BEFORE = ("programs/koch/square.irl", "programs/koch/square_cyclic.irl")
+"""Programs whose streams examples read; run for all of them, so that each test can be run by itself."""
 MADE_BY_RUNS = shutil.ignore_patterns("*.irdata", "*.npz", "*.csv.*", "readings.txt", "__pycache__")
 
 
@@ -44,8 +46,8 @@ def clone(tmp_path_factory):
         shutil.copytree(ROOT / name, folder / name, ignore=MADE_BY_RUNS)
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
-        # What others read the stream of, so that each test can be run by itself.
-        assert main(shlex.split(EXAMPLES[0][1])[1:]) == 0
+        for program in RUN_BEFORE:
+            assert main(["run", program, "--quiet"]) == 0
     return folder
 
 

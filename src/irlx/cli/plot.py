@@ -12,7 +12,7 @@ _EXAMPLE = """\
 examples:
   irlx plot programs/koch/square.irdata
   irlx plot programs/koch/square.irdata -o square.svg
-  irlx plot square.irdata square_cyclic.irdata --joints 7,11 -o compared.svg -o compared.png
+  irlx plot programs/koch/square.irdata programs/koch/square_cyclic.irdata --joints 7,11 -o compared.svg
 """
 _SHOW = ("position", "speed", "acceleration", "singular", "clearance", "path-speed")
 _COLUMNS, _MILLIMETRES = (40, 1000), (100, 2000)
