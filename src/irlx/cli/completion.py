@@ -19,6 +19,9 @@ _STREAMS = "streams"
 _FILES: Mapping[str, tuple[str, ...]] = {
     "P": (*_PROGRAMS, _STREAMS),
     "OUT": (_STREAMS,),
+    "OUT2": (_STREAMS,),
+    "plot F": ("*.svg", "*.png", "*.pdf"),
+    "convert OUT": (_STREAMS, "*.script", "*.src", "*.mod"),
     "IN": (_STREAMS,),
     "STREAM": (_STREAMS,),
     "FILE": _LISTS,
