@@ -2,10 +2,12 @@
 
 import json
 import os
+import re
 import signal
 
 import pytest
 
+from irlx.cell.packaged import packaged_cell, packaged_urdf
 from irlx.report.figures import Figures
 from irlx.report.replay import writer
 from irlx.streams.atomic import AtomicFile
@@ -149,6 +151,20 @@ def test_a_disk_that_is_full_for_the_page_costs_no_stream(inside, folder, names,
     assert done.returncode == 2
     assert "error IRL003: cannot write p.html: no space left on device" in done.stderr
     assert names(folder) == ["p.csv", *FILES]
+
+
+def test_a_link_that_cannot_be_drawn_is_told_and_costs_no_run(inside, folder):
+    model = packaged_urdf("planar3")
+    shape = re.search(r"<visual>.*?<geometry>(.*?)</geometry>", model, re.DOTALL)[1]
+    drawn = model.replace(shape, '<mesh filename="lost.stl"/>', 1)
+    (folder / "arm.urdf").write_text(drawn, encoding="utf-8")
+    own = packaged_cell("planar3").decode().replace("[robot]", '[robot]\nmodel = "arm.urdf"')
+    (folder / "p.toml").write_text(own, encoding="utf-8")
+    done = inside("run", "p.irl", "--html", "p.html", "-o", "p.csv", "--tick", "20")
+    assert done.returncode == 0
+    assert "p.toml: robot.model: warning IRL721: link '" in done.stderr
+    assert "there is no mesh lost.stl" in done.stderr
+    assert any("IRL721" in words for words in page_data(folder / "p.html")["diagnostics"])
 
 
 @pytest.mark.req("QA-08")

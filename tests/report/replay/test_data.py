@@ -1,7 +1,9 @@
 """What a page says of a run, against independent truth."""
 
 import base64
+import gzip
 import json
+import re
 from dataclasses import replace
 from html.parser import HTMLParser
 from itertools import pairwise
@@ -236,14 +238,21 @@ def test_a_notebook_gets_a_small_page(made):
     _, run, data = made
     html = notebook_html(run)
     assert html == run._repr_html_()
-    frame = read_frame(html)
-    small = page_data(frame)
+    assert len(html) < 500_000
+    assert html == notebook_html(run)
+    small = page_data(unpacked(read_frame(html)))
     assert small["small"] is True
     assert len(small["frames"]["tick"]) <= 300
     assert small["program"]["text"] == TEXT
     assert small["limits"] == data["limits"]
     assert '<th scope="row"' in html
     assert "path error" in html
+
+
+def unpacked(html):
+    """The page that a packed one unpacks, as its script does."""
+    (letters,) = re.findall(r'atob\("([A-Za-z0-9+/=]+)"\)', html)
+    return gzip.decompress(base64.b64decode(letters)).decode()
 
 
 def read_frame(html):
@@ -307,6 +316,15 @@ def test_a_minute_of_a_robot_with_meshes_is_small(tmp_path):
         np.testing.assert_array_equal(points, part.shape.vertices.astype("f4"))
         np.testing.assert_array_equal(faces.reshape(-1, 3), part.shape.faces)
         assert shape["color"] == part.colour.code
+
+
+def test_blocks_that_are_left_out_are_told(made):
+    _, run, _ = made
+    replay = replay_of(run, run.source)
+    replay.found.blocks = 30_000
+    data, lacking = replay_json(replay)
+    assert [one.code for one in lacking] == ["IRL723"]
+    assert f"the first {len(run.stream.records)} of 30,000 blocks" in json.loads(data)["diagnostics"][-1]
 
 
 def test_data_are_json_of_plain_numbers(made):

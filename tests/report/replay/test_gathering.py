@@ -9,6 +9,7 @@ from irlx.diagnostics import report
 from irlx.report.events import LimitActive, Slowed
 from irlx.report.outcome import Outcome
 from irlx.report.replay import data
+from irlx.report.replay import gathering as gathering_module
 from irlx.report.replay.events import replay_events
 from irlx.report.replay.gathering import Gathering
 from irlx.report.replay.source import ReplaySource
@@ -110,6 +111,17 @@ def test_inputs_messages_and_the_end(gathering):
     assert late["first"] == 4
     assert len(late["text"]) < 2100
     assert (stop["kind"], stop["first"], stop["label"]) == ("stop", 4, "ended by IRL002")
+
+
+def test_a_page_lists_the_first_blocks(gathering, monkeypatch):
+    monkeypatch.setattr(gathering_module, "MOST_LISTED", 3)
+    monkeypatch.setattr(gathering_module, "_RECENT", 2)
+    for number in range(1, 6):
+        gathering.take(rows(5 * number - 4, 5, number, record=wait(number, 10 + number, 5 * number - 5)))
+        gathering.say("x")
+    found = gathering.found
+    assert (len(found.records), found.blocks, len(found.waits), len(found.messages)) == (3, 5, 3, 3)
+    assert found.frames.columns.line[-1] == 15
 
 
 def test_lines_of_other_files_are_none(gathering):

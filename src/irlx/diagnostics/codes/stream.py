@@ -101,6 +101,11 @@ STREAM: tuple[Code, ...] = (
         "{path}: a page shows the robot of a cell, and this Run does not know its cell",
         "runs that irlx.run gives back know theirs",
     ),
+    info(
+        "IRL723",
+        "the page lists the first {listed} of {count} blocks; its frames show all of the run",
+        "the stream beside it has all blocks",
+    ),
     error(
         "IRL725",
         "this format has no blocks, so that there is nothing to be replayed",

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from irlx._version import __version__
 from irlx.blocks.text import block_text
-from irlx.diagnostics import Diagnostic
+from irlx.diagnostics import Diagnostic, report
 from irlx.language.keywords import keyword_table
 from irlx.report.appearance.build import TRIANGLES, appearance_of
 from irlx.report.events import LimitActive, Slowed
@@ -48,12 +48,16 @@ class Replay:
 
 
 def replay_json(replay: Replay, small: bool = False) -> tuple[bytes, tuple[Diagnostic, ...]]:
-    """JSON of a page, UTF-8, and warnings, IRL721, of links that could not be drawn as they are."""
+    """JSON of a page, UTF-8, and what it lacks: IRL721, links not drawn as they are; IRL723, blocks."""
     looks = appearance_of(replay.source.cell, SMALL_TRIANGLES if small else TRIANGLES)
     plain = {**_head(replay, small), **_course(replay), **Scenery().plain(looks, replay.source.cell)}
-    plain["diagnostics"] = [str(one) for one in (*replay.diagnostics, *looks.diagnostics)]
+    lacking = list(looks.diagnostics)
+    listed, count = len(replay.found.records), replay.found.blocks
+    if count > listed:
+        lacking.append(report("IRL723", listed=f"{listed:,}", count=f"{count:,}"))
+    plain["diagnostics"] = [str(one) for one in (*replay.diagnostics, *lacking)]
     options = orjson.OPT_SERIALIZE_NUMPY | orjson.OPT_NON_STR_KEYS
-    return orjson.dumps(plain, option=options), looks.diagnostics
+    return orjson.dumps(plain, option=options), tuple(lacking)
 
 
 def _head(replay: Replay, small: bool) -> Plain:

@@ -13,14 +13,13 @@ from irlx.blocks import PauseBlock, WaitBlock
 from irlx.blocks.text import block_text
 from irlx.diagnostics import Diagnostic
 from irlx.report.events import LimitActive, Slowed
-from irlx.report.replay.gathering import Gathered
+from irlx.report.replay.gathering import MOST_SHOWN, Gathered
 from irlx.report.signals import signals_of
 from irlx.report.terminal import PER, joint_value
 from irlx.robot.limits import JointLimits
 from irlx.streams.joint_stream import StreamHeader
 
 Event = dict[str, Any]
-_MOST_MESSAGE = 2000
 
 
 def replay_events(
@@ -143,6 +142,6 @@ def _waits(found: Gathered) -> Iterator[Event]:
 
 def _message(tick: int, text: str) -> Event:
     shown = text.strip()
-    if len(shown) > _MOST_MESSAGE:
-        shown = f"{shown[:_MOST_MESSAGE]} …"
+    if len(shown) > MOST_SHOWN:
+        shown = f"{shown[:MOST_SHOWN]} …"
     return _event("message", tick, tick, next(iter(shown.splitlines()), ""), shown)

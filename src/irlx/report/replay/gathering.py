@@ -15,6 +15,12 @@ from irlx.robot.limits import JointLimits, alike
 from irlx.streams.joint_stream import BlockRecord, StreamHeader
 
 Array = NDArray[np.float64]
+MOST_LISTED = 20_000
+"""Blocks that a page lists, and messages; of more the first."""
+MOST_SHOWN = 2000
+"""Characters of a message, about."""
+_RECENT = 4096
+"""Blocks whose lines are kept: rows come right behind their blocks."""
 Integers = NDArray[np.int64]
 
 
@@ -25,10 +31,12 @@ class Gathered:
     Its `rows`; `records` of its blocks; `limits` and the tick from which on each is in force, and `tools`,
     the blocks that set them; `waits` and the last tick of each; `pairs`, of which frames tell the nearest by
     its number: link, obstacle or other link, margin (m); `messages` of the program, each with its tick.
+    Of the `blocks` so far, and of messages, at most `MOST_LISTED` are kept.
     """
 
     frames: Frames
     rows: int = 0
+    blocks: int = 0
     records: list[BlockRecord] = field(default_factory=list)
     limits: list[tuple[int, JointLimits]] = field(default_factory=list)
     tools: list[tuple[int, ToolBlock]] = field(default_factory=list)
@@ -69,18 +77,24 @@ class Gathering:
         tick = max(self.found.rows - 1, 0)
         messages = self.found.messages
         if messages and messages[-1][0] == tick:
-            messages[-1] = (tick, messages[-1][1] + text)
-        else:
+            if len(messages[-1][1]) < MOST_SHOWN:
+                messages[-1] = (tick, messages[-1][1] + text)
+        elif len(messages) < MOST_LISTED:
             messages.append((tick, text))
 
     def _take_record(self, record: BlockRecord) -> None:
         block, found = record.block, self.found
-        found.records.append(record)
+        found.blocks += 1
         own = block.origin.file == self._header.program_name
         self._lines[block.id] = block.origin.line if own else 0
+        if len(self._lines) > _RECENT:
+            del self._lines[next(iter(self._lines))]
         if isinstance(block, ToolBlock):
             found.tools.append((found.rows, block))
-        elif isinstance(block, WaitBlock | PauseBlock):
+        if found.blocks > MOST_LISTED:
+            return
+        found.records.append(record)
+        if isinstance(block, WaitBlock | PauseBlock):
             found.waits.append((record, record.tick))
 
     def _columns(self, segment: Segment) -> Columns:

@@ -11,6 +11,7 @@ from irlx.diagnostics import report
 from irlx.report.lines import Line
 from irlx.report.replay.data import replay_json
 from irlx.report.replay.of_run import replay_of
+from irlx.report.replay.packing import packed
 from irlx.report.replay.page import page_of
 from irlx.report.terminal import summary_lines
 from irlx.streams.atomic import AtomicFile
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
 SMALL_FRAMES = 300
 _HEIGHT = 420
+_FRAME = "margin-top: .6em; border: 1px solid rgba(128, 128, 128, .35); border-radius: 6px"
 _CAPTION = "caption-side: top; text-align: left; font-weight: 600"
 _LABEL = "text-align: left; white-space: nowrap"
 _WORDS = "text-align: left; white-space: pre; font-family: monospace"
@@ -44,8 +46,8 @@ def notebook_html(run: Run) -> str:
     if run.source is None:
         return table
     data, _ = replay_json(replay_of(run, run.source, SMALL_FRAMES), small=True)
-    page = escape(page_of(run.header.program_name, data).decode("utf-8"))
-    style = f"width: 100%; height: {_HEIGHT}px; border: 0; border-radius: 6px"
+    page = escape(packed(page_of(run.header.program_name, data)))
+    style = f"width: 100%; height: {_HEIGHT}px; {_FRAME}"
     frame = f'<iframe title="replay" sandbox="allow-scripts" style="{style}" srcdoc="{page}"></iframe>'
     return f"{table}\n{frame}"
 
