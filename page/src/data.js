@@ -23,6 +23,7 @@ export class Run {
     shortenNames(this.joints);
     this.programLines = data.program.text?.split('\n') ?? [];
     this.blocks = data.blocks.map((block) => this.#begun(block));
+    this.blockFrames = this.blocks.map((block) => block.frame);
     this.events = data.events
       .map((event) => this.#placed(event))
       .sort((a, b) => a.first - b.first || a.last - b.last);
@@ -74,7 +75,7 @@ export class Run {
 
   /** The block in execution in a frame, undefined before the first. */
   blockAt(frame) {
-    return this.blocks.filter((block) => block.frame <= frame).pop();
+    return this.blocks[lowerBound(this.blockFrames, frame + 1) - 1];
   }
 
   /** What a block does, in words of the program where they are known. */

@@ -6,7 +6,7 @@ import { Tabs } from './tabs.js';
 const WIDE = '(min-width: 900px) and (min-height: 560px)';
 
 export class Layout {
-  /** `fitted(insets)` is told how much of the scene the joints cover; `small` is the page of a notebook. */
+  /** `fitted({width, height})` is told how much of the scene's corner the joints cover, px; `small` is the page of a notebook. */
   constructor({ small, program, events, fitted }) {
     Object.assign(this, { small, fitted });
     this.joints = byId('joints');
@@ -55,7 +55,8 @@ export class Layout {
     if (this.isWide) this.joints.hidden = !over;
     byId('show-joints').setAttribute('aria-pressed', over);
     byId('show-joints').hidden = !this.isWide;
-    this.fitted({ left: over ? this.joints.offsetWidth + 12 : 0, right: 0, top: 0, bottom: 0 });
+    const size = (length) => (over ? length + 12 : 0);
+    this.fitted({ width: size(this.joints.offsetWidth), height: size(this.joints.offsetHeight) });
   }
 
   #connectSplitter(splitter) {

@@ -43,9 +43,9 @@ function start() {
     small,
     program,
     events: run.events.length,
-    fitted: (insets) => {
+    fitted: (covered) => {
       if (!stage) return;
-      stage.insets = insets;
+      stage.covered = covered;
       if (!stage.view.touched) stage.fit();
     },
   });

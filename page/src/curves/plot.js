@@ -253,7 +253,7 @@ export class Plot {
   }
 
   #placeLine() {
-    this.line.style.transform = `translateX(${this.plot.valToPos(this.time, 'x').toFixed(1)}px)`;
+    this.line.style.transform = `translateX(${Math.round(this.plot.valToPos(this.time, 'x'))}px)`;
   }
 
   #tell(frame, series) {

@@ -110,7 +110,7 @@ function clearanceSpec(run, theme) {
   const room = frames.clearance.map((value, frame) => (value === null ? null : (value - margin(frame)) * 1000));
   return {
     id: 'clearance',
-    title: 'Clearance above the margin',
+    title: 'Room above the margin',
     unit: () => 'mm',
     series: [
       { label: 'room', scale: 'y', colour: () => theme.colour('nearest'), values: () => room, shown: () => true, width: 1.8 },
@@ -124,7 +124,7 @@ function clearanceSpec(run, theme) {
     readout: (frame) => {
       const pair = pairs[frames.nearest[frame]];
       if (!pair || room[frame] === null) return 'nothing near';
-      return `${pair.link} – ${pair.other}  ${fixed(frames.clearance[frame] * 1000, 1)} mm, margin ${+(pair.margin * 1000).toFixed(1)}`;
+      return `${pair.link} – ${pair.other}  ${fixed(room[frame], 1)} mm`;
     },
   };
 }

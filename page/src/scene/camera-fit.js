@@ -55,7 +55,7 @@ function spread(points, toCamera) {
 }
 
 /**
- * Target and place of a camera that looks along -`toCamera` and just sees all points.
+ * Target, place and depth (along `toCamera`, m) of a camera that looks along -`toCamera` and just sees all points.
  *
  * `slopes` {left, right, bottom, top}: how far the view opens to each side at distance 1. Each point bounds
  * the distance of the camera from below on each side; the shift that balances two opposite sides is best.
@@ -79,5 +79,5 @@ export function fitCamera(points, toCamera, slopes) {
   const middle = (near + far) / 2;
   const place = (depth) =>
     new Vector3().addScaledVector(axes[0], x).addScaledVector(axes[1], y).addScaledVector(axes[2], depth);
-  return { position: place(z), target: place(middle) };
+  return { position: place(z), target: place(middle), depth: z };
 }

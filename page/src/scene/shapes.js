@@ -49,12 +49,20 @@ function cone(shape, grown) {
   return geometry.translate(0, 0, (over - grown) / 2);
 }
 
+/** Geometry of each mesh, made once, with the box around it. */
+const made = new WeakMap();
+
 function meshGeometry(mesh) {
-  const geometry = new BufferGeometry();
-  geometry.setAttribute('position', new BufferAttribute(new Float32Array(bytes(mesh.vertices)), 3));
-  const Numbers = mesh.index === 'u16' ? Uint16Array : Uint32Array;
-  geometry.setIndex(new BufferAttribute(new Numbers(bytes(mesh.faces)), 1));
-  return toCreasedNormals(geometry, CREASE);
+  if (!made.has(mesh)) {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute('position', new BufferAttribute(new Float32Array(bytes(mesh.vertices)), 3));
+    const Numbers = mesh.index === 'u16' ? Uint16Array : Uint32Array;
+    geometry.setIndex(new BufferAttribute(new Numbers(bytes(mesh.faces)), 1));
+    const creased = toCreasedNormals(geometry, CREASE);
+    creased.computeBoundingBox();
+    made.set(mesh, creased);
+  }
+  return made.get(mesh);
 }
 
 function bytes(base64) {
@@ -83,13 +91,7 @@ function halfSize(shape, meshes) {
     case 'capsule':
       return { x: radius, y: radius, z: length / 2 + radius };
     case 'mesh': {
-      const geometry = new BufferGeometry();
-      geometry.setAttribute(
-        'position',
-        new BufferAttribute(new Float32Array(bytes(meshes[shape.mesh].vertices)), 3),
-      );
-      geometry.computeBoundingBox();
-      const { min, max } = geometry.boundingBox;
+      const { min, max } = meshGeometry(meshes[shape.mesh]).boundingBox;
       const [x, y, z] = ['x', 'y', 'z'].map((k) => (max[k] - min[k]) / 2);
       return { x, y, z, centre: ['x', 'y', 'z'].map((k) => (max[k] + min[k]) / 2) };
     }

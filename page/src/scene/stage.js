@@ -30,7 +30,8 @@ export class Stage {
     for (const obstacle of this.obstacles) this.view.scene.add(obstacle.group);
     this.#addNames();
     this.compass = new Compass(this.view);
-    this.insets = { left: 0, right: 0, top: 0, bottom: 0 };
+    /** Size in px of what covers the upper left corner of the view. */
+    this.covered = { width: 0, height: 0 };
     this.view.onResize = () => {
       if (!this.view.touched) this.fit();
     };
@@ -71,13 +72,14 @@ export class Stage {
     const open = Math.tan((camera.fov * Math.PI) / 360);
     const [across, up] = [open * camera.aspect * 0.94, open * 0.94];
     const { width = 1, height = 1 } = this.view;
-    const slopes = {
-      left: across * (1 - (2 * this.insets.left) / width),
-      right: across * (1 - (2 * this.insets.right) / width),
-      top: up * (1 - (2 * this.insets.top) / height),
-      bottom: up * (1 - (2 * this.insets.bottom) / height),
-    };
-    const { position, target } = fitCamera(this.points, this.direction, slopes);
+    const whole = { left: across, right: across, top: up, bottom: up };
+    // Beside what covers the corner, or below it: where the camera can come nearer.
+    const left = (share) => Math.max(0.25, 1 - 2 * share);
+    const beside = { ...whole, left: across * left(this.covered.width / width) };
+    const below = { ...whole, top: up * left(this.covered.height / height) };
+    const [{ position, target }] = [beside, below]
+      .map((slopes) => fitCamera(this.points, this.direction, slopes))
+      .sort((a, b) => a.depth - b.depth);
     camera.position.copy(position);
     controls.target.copy(target);
     camera.near = this.sphere.radius / 100;
