@@ -55,7 +55,7 @@ export class Timeline {
     blocks.forEach((block, k) => {
       const next = blocks[k + 1];
       // Blocks that only switch something take no time.
-      if (next && next.tick === block.tick) return;
+      if (block.from >= (next ? next.from : duration)) return;
       const [from, to] = [this.#x(block.from, width), this.#x(next ? next.from : duration, width)];
       shade = 1 - shade;
       context.fillStyle = colours[shade];

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import base64
-import json
 from math import cos, pi, sin, sqrt
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 import irlx
 
-ASSETS = Path(irlx.__file__).parent / "report" / "page"
 FRAMES, TICK = 101, 0.01
 TURNED = [0.0, 0.0, sin(pi / 8), cos(pi / 8)]
 """45 degrees about z."""
@@ -81,7 +78,10 @@ def made_data(**changes: object) -> dict[str, Any]:
             "keywords": ["PROGRAM", "BEGIN", "MOVE", "LIN", "ENDPROGRAM"],
         },
         "cell": {"name": "made.toml"},
-        "summary": {"text": "program     made.irl, complete\nduration    1 s", "plain": {}},
+        "summary": {
+            "text": "made.irl: complete, 1 s, not slowed\nmoves       2\nlimit use   position  100 %",
+            "plain": {"moves": 2},
+        },
         "tick_s": TICK,
         "ticks_per_frame": 1,
         "joints": [{"name": "swing", "unit": "rad"}, {"name": "stretch", "unit": "m"}],
@@ -206,14 +206,3 @@ def _tetrahedron() -> dict[str, str]:
     faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]], dtype="<u2")
     coded = [base64.b64encode(array.tobytes()).decode("ascii") for array in (corners, faces)]
     return {"vertices": coded[0], "faces": coded[1], "index": "u16"}
-
-
-def page_text(data: dict[str, Any]) -> str:
-    """The page of such data."""
-    text = (ASSETS / "page.html").read_text(encoding="utf-8")
-    written = json.dumps(data).replace("<", "\\u003c")
-    parts = {"style": (ASSETS / "page.css").read_text(encoding="utf-8"), "data": written}
-    parts |= {"script": (ASSETS / "page.js").read_text(encoding="utf-8"), "title": data["title"]}
-    for mark, part in parts.items():
-        text = text.replace("{{" + mark + "}}", part)
-    return text

@@ -3,6 +3,7 @@
 import { element } from '../element.js';
 import { Plot } from './plot.js';
 import { specsOf } from './specs.js';
+import { TimeWindow } from './time-window.js';
 
 const LEAST = 88; // px of height of a plot
 const MOST = 190;
@@ -13,13 +14,18 @@ export class CurvesPanel {
     const specs = specsOf(run, choice, colours, theme);
     const right = specs.some((spec) => spec.second) ? 46 : 12;
     const seek = (time) => player.seekTime(time);
-    this.plots = specs.map((spec) => new Plot(run, spec, theme, { right, seek, hover: (frame) => hover(frame) }));
+    const shown = new TimeWindow(run);
+    this.plots = specs.map((spec) => new Plot(run, spec, theme, { right, seek, hover, shown }));
+    shown.onChange(() => this.plots.forEach((plot) => plot.window()));
     this.list = element('div', { class: 'plots' }, ...this.plots.map((plot) => plot.root));
     this.host.append(this.#toolbar(), this.list);
     if (single) this.#showOne(0);
     choice.onChange(() => this.#renew());
     theme.onChange(() => this.#paint());
-    player.onChange(() => this.plots.forEach((plot) => plot.now(player.frame, player.time)));
+    player.onChange(() => {
+      if (player.playing) shown.follow(player.time);
+      this.plots.forEach((plot) => plot.now(player.frame, player.time));
+    });
     new ResizeObserver(() => this.#resize()).observe(this.list);
   }
 

@@ -13,8 +13,8 @@ const FOCUS = 28; // px within which a curve is told by the pointer
  * marks() -> [{series, first, last}] stretches of curves drawn strong, readout(frame, series) -> text.
  */
 export class Plot {
-  constructor(run, spec, theme, { right, seek, hover }) {
-    Object.assign(this, { run, spec, theme, right, seek, hover });
+  constructor(run, spec, theme, { right, seek, hover, shown }) {
+    Object.assign(this, { run, spec, theme, right, seek, hover, shown });
     this.value = element('output', { class: 'plot-value' });
     this.host = element('div', { class: 'plot-canvas', role: 'img', 'aria-label': `${spec.title} over time` });
     this.heading = element('span', { class: 'plot-unit' }, spec.unit());
@@ -62,6 +62,11 @@ export class Plot {
     this.#tell(this.frame, null);
   }
 
+  /** Show the stretch of time that is `shown` now. */
+  window() {
+    this.plot?.setScale('x', { min: this.shown.from, max: this.shown.to });
+  }
+
   /** Take the colours of the theme. */
   paint() {
     this.plot?.redraw(false, true);
@@ -99,7 +104,7 @@ export class Plot {
       },
       focus: { alpha: 0.22 },
       scales: {
-        x: { time: false, range: [0, this.run.duration || 1] },
+        x: { time: false, range: () => [this.shown.from, this.shown.to] },
         y: { range: (_, low, high) => this.#range('y', low, high) },
         y2: { range: (_, low, high) => this.#range('y2', low, high) },
       },
@@ -225,6 +230,19 @@ export class Plot {
       this.#focus(this.#nearest(frame, y), frame);
       if (event.pointerType === 'mouse') this.hover(frame);
     });
+    over.addEventListener('dblclick', () => this.shown.reset());
+    over.addEventListener(
+      'wheel',
+      (event) => {
+        // The wheel alone scrolls the list of plots.
+        const { shown } = this;
+        if (event.ctrlKey || event.metaKey) shown.zoom(at(event).time, Math.exp(event.deltaY / 300));
+        else if (event.shiftKey && !shown.isWhole) shown.shift(((event.deltaX || event.deltaY) / 1000) * (shown.to - shown.from));
+        else return;
+        event.preventDefault();
+      },
+      { passive: false },
+    );
     over.addEventListener('pointerleave', () => {
       this.#focus(null, this.frame);
       this.focused = null;
@@ -253,6 +271,7 @@ export class Plot {
   }
 
   #placeLine() {
+    this.line.hidden = this.time < this.shown.from || this.time > this.shown.to;
     this.line.style.transform = `translateX(${Math.round(this.plot.valToPos(this.time, 'x'))}px)`;
   }
 

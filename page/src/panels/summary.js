@@ -2,26 +2,30 @@
 
 import { element } from '../element.js';
 
-/** Rows [key, value]: lines with the same key as the one before them share it. */
+const LABEL = 12; // letters of a label with what follows it
+
+/** Rows [label, words] of the lines of a summary; what has no label goes on from the line before. */
 export function summaryRows(text) {
   return text
     .split('\n')
     .filter((line) => line.trim())
     .map((line) => {
-      const found = line.match(/^(\S(?:.*?\S)?)\s{2,}(.*)$/);
-      return found ? [found[1], found[2]] : ['', line.trim()];
+      const label = line.slice(0, LABEL);
+      return label.endsWith(' ') && !label.includes(':') ? [label.trim(), line.slice(LABEL)] : ['', line];
     });
 }
 
 export function fillSummary(host, run) {
   const { summary, diagnostics, irlx } = run.data;
-  let before = null;
-  const rows = summaryRows(summary.text).map(([key, value]) => {
-    const shown = key === before ? '' : key;
-    before = key;
-    return element('div', {}, element('dt', {}, shown), element('dd', {}, value));
-  });
-  host.append(element('dl', { class: 'summary' }, ...rows));
+  const [verdict, ...rows] = summaryRows(summary.text);
+  host.append(
+    element('p', { class: 'verdict' }, verdict?.[1] ?? ''),
+    element(
+      'dl',
+      { class: 'summary' },
+      ...rows.map(([label, words]) => element('div', {}, element('dt', {}, label), element('dd', {}, words))),
+    ),
+  );
   if (diagnostics.length)
     host.append(
       element('h3', { class: 'panel-title' }, diagnostics.length === 1 ? 'Diagnostic' : 'Diagnostics'),

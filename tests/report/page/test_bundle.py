@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from made_page import ASSETS
+import irlx
 
+ASSETS = Path(irlx.__file__).parent / "report" / "page"
 SOURCES = Path(__file__).parents[3] / "page"
 FILES = ("page.js", "page.css", "page.html", "LICENCES.txt")
 MOST_BYTES = 800_000

@@ -1,9 +1,12 @@
 """The replay page in a browser: what it shows, asks for and answers to."""
 
+import json
+
 import numpy as np
 import pytest
 
-from made_page import FRAMES, made_data, page_text, tool_poses
+from irlx.report.replay.page import page_of
+from made_page import FRAMES, made_data, tool_poses
 
 DARKER = 60
 """How much darker at least the dark page is than the light one, of 255."""
@@ -16,7 +19,8 @@ def made(tmp_path_factory):
 
     def write(**changes):
         path = folder / f"page_{len(list(folder.iterdir()))}.html"
-        path.write_text(page_text(made_data(**changes)), encoding="utf-8")
+        data = made_data(**changes)
+        path.write_bytes(page_of(data["title"], json.dumps(data).encode()))
         return path
 
     return write
@@ -162,6 +166,15 @@ def test_curves_seek(shown):
     shown.page.mouse.move(box["x"] + box["width"] * 0.7, box["y"] + box["height"] / 2)
     shown.page.mouse.up()
     assert abs(shown.run("() => irlx.frame") - 70) <= 1
+    shown.page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    shown.page.keyboard.down("Control")
+    shown.page.mouse.wheel(0, -300)
+    shown.page.keyboard.up("Control")
+    shown.page.mouse.click(box["x"] + 1, box["y"] + box["height"] / 2)
+    assert shown.run("() => irlx.frame") == pytest.approx(50 - 50 / np.e, abs=2)
+    shown.page.mouse.dblclick(box["x"] + 1, box["y"] + box["height"] / 2)
+    shown.page.mouse.click(box["x"] + 1, box["y"] + box["height"] / 2)
+    assert shown.run("() => irlx.frame") == 0
     plots = shown.page.locator(".plot").evaluate_all("all => all.map(plot => plot.dataset.plot)")
     assert plots == ["position", "speed", "path", "clearance", "singular"]
 
@@ -175,7 +188,14 @@ def test_light_and_dark(made, open_page):
     assert (means["light"] - means["dark"]).min() > DARKER
 
 
-@pytest.mark.parametrize(("width", "height"), [(390, 844), (320, 568), (844, 390), (820, 1180), (2560, 1440)])
+@pytest.mark.parametrize(
+    ("width", "height"),
+    [
+        (390, 844),
+        (844, 390),
+        *(pytest.param(*size, marks=pytest.mark.slow) for size in ((320, 568), (820, 1180), (2560, 1440))),
+    ],
+)
 def test_nothing_overflows(made, open_page, width, height):
     with open_page(made(), width=width, height=height) as page:
         for name in page.page.locator("[role=tab]").all_inner_texts():
