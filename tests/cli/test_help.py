@@ -15,8 +15,6 @@ SERVING = {"view"}
 """Commands that go on until somebody stops them: their examples are only parsed here."""
 SEEN_BY_EXAMPLES = ("programs", "tests/conformance", "src/irlx/cell/robots")
 """Folders of the repository that examples name."""
-RUN_BEFORE = ("programs/koch/square.irl", "programs/koch/square_cyclic.irl")
-"""Programs whose streams examples read; run for all of them, so that each test can be run by itself."""
 MADE_BY_RUNS = shutil.ignore_patterns("*.irdata", "*.npz", "*.csv.*", "readings.txt", "__pycache__")
 
 
@@ -33,9 +31,7 @@ def examples(parser):
 
 
 COMMANDS = parsers()
-EXAMPLES = [(name, line) for name, parser in COMMANDS.items() if name for line in examples(parser)]
-# Behind the others, for those of the whole line use what they made.
-EXAMPLES += [("", line) for line in examples(COMMANDS[""])]
+EXAMPLES = list(dict.fromkeys(line for parser in COMMANDS.values() for line in examples(parser)))
 
 
 @pytest.fixture(scope="module")
@@ -44,11 +40,15 @@ def clone(tmp_path_factory):
     folder = tmp_path_factory.mktemp("clone")
     for name in SEEN_BY_EXAMPLES:
         shutil.copytree(ROOT / name, folder / name, ignore=MADE_BY_RUNS)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.chdir(folder)
-        for program in RUN_BEFORE:
-            assert main(["run", program, "--quiet"]) == 0
     return folder
+
+
+def made_before(words):
+    """Make the streams that a command reads and that no example before it has made."""
+    for word in words[1:]:
+        path = Path(word)
+        if path.suffix == ".irdata" and not path.exists() and path.with_suffix(".irl").exists():
+            assert main(["run", str(path.with_suffix(".irl")), "--quiet"]) == 0
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -60,13 +60,15 @@ def test_every_help_has_examples_of_its_command(name):
 
 
 @pytest.mark.req("QA-10")
-@pytest.mark.parametrize(("name", "line"), EXAMPLES, ids=[line for _, line in EXAMPLES])
-def test_examples_work(clone, monkeypatch, capsys, name, line):
+@pytest.mark.parametrize("line", EXAMPLES)
+def test_examples_work(clone, monkeypatch, capsys, line):
     monkeypatch.chdir(clone)
     words = shlex.split(line)[1:]
     if words[0] in SERVING:
         COMMANDS[""].parse_args(words)
         return
+    made_before(words)
+    capsys.readouterr()
     code = main(words)
     out, err = capsys.readouterr()
     assert code == 0, out + err
