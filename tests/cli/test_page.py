@@ -58,11 +58,13 @@ def test_a_page_beside_the_stream_and_of_its_replay(inside, folder, names):
     assert page_data(folder / "again.html")["program"] == {**data["program"], "text": None}
 
 
-def test_json_tells_the_page(inside):
+def test_json_tells_the_page(inside, folder):
     done = inside("run", "p.irl", "--html", "p.html", "--json")
     found = json.loads(done.stdout)
     assert (found["page"], found["files"]) == ("p.html", ["p.irdata"])
     assert json.loads(inside("run", "p.irl", "--json").stdout)["page"] is None
+    (folder / "p.irl").write_text(BEYOND, encoding="utf-8")
+    assert json.loads(inside("run", "p.irl", "--html", "p.html", "--json").stdout)["page"] == "p.partial.html"
 
 
 REFUSED = [

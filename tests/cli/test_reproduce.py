@@ -129,7 +129,8 @@ def test_what_no_file_can_tell(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "option", [["-o", "x.csv"], ["--tick", "5"], ["--explain-tick", "3"], ["--write-data"]]
+    "option",
+    [["-o", "x.csv"], ["--html", "x.html"], ["--tick", "5"], ["--explain-tick", "3"], ["--write-data"]],
 )
 def test_options_that_the_file_answers(
     option: list[str], folder: Path, capsys: pytest.CaptureFixture[str]

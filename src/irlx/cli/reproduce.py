@@ -10,6 +10,7 @@ from irlx.cli.execution import import_plugins, standard_input
 
 _OF_ITS_OWN = {"output": "-o", "tick": "--tick", "max_slow": "--max-slow", "max_steps": "--max-steps"} | {
     "explain_tick": "--explain-tick",
+    "html": "--html",
     "pause": "--pause",
     "write_data": "--write-data",
 }

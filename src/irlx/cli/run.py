@@ -244,6 +244,7 @@ def _tell_partial(run: Outcome, outputs: list[Path], why: str, options: argparse
         plain = {
             "summary": run.summary.to_plain(),
             "output": run.output,
+            "page": None if run.page is None else str(run.page),
             "diagnostics": _plain_diagnostics(run.diagnostics),
         }
         print(json.dumps(plain, indent=2))
