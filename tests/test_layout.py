@@ -23,10 +23,11 @@ ORDER = (
     "verifier",
     "report",
     "notebook",
+    "viewer",
     "cli",
 )
 """Folders of the package; each may import from those before it and from itself."""
-DOORS = {"notebook", "cli"}
+DOORS = {"notebook", "viewer", "cli"}
 """Folders through which people come in: they use what wires stages together."""
 WIRING = {
     "job",

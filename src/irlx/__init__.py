@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from irlx.transform.measures.measure import Measure as Criterion
     from irlx.verification import verify
     from irlx.verifier.findings.report import Report
+    from irlx.viewer.view import view
 
 _HOMES = {
     "CellError": "irlx.cell.errors",
@@ -62,6 +63,7 @@ _HOMES = {
     "run": "irlx.running",
     "stream": "irlx.running",
     "verify": "irlx.verification",
+    "view": "irlx.viewer.view",
 }
 """Module of each public name; imported on first use, so that looking at a program stays light."""
 
@@ -94,6 +96,7 @@ __all__ = [
     "run",
     "stream",
     "verify",
+    "view",
 ]
 
 

@@ -139,7 +139,7 @@ def _loaded_cell(program: Program | Recorded, given: CellGiven) -> Cell:
     else:
         cell = load_cell(cell_of(program, None if given is None else Path(given)))
     if isinstance(program, Recorded):
-        check_joints(program, cell)
+        check_joints(program.header, cell)
     return cell
 
 

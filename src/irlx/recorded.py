@@ -140,22 +140,27 @@ def recorded(path: Path) -> Recorded:
     if not complete:
         raise IrlxError(report("IRL726", Place(str(path))))
     stopped = _stopped(path, records)
-    return Recorded(path, header, tuple(records), stopped, _digest(path), _text_beside(path, header))
+    return Recorded(path, header, tuple(records), stopped, _digest(path), text_beside(path, header))
 
 
 def cell_of(found: Recorded, given: Path | None) -> Path:
     """Path of the cell file to replay in. Raises CellError, IRL609, that lists what was tried."""
+    return cell_beside(found.path, found.header, given)
+
+
+def cell_beside(path: Path, header: StreamHeader, given: Path | None) -> Path:
+    """Path of the cell file of a stream at `path`. Raises CellError, IRL609, that lists what was tried."""
     if given is not None:
         return given
-    name, folder = found.header.cell_name, found.path.parent
+    name, folder = header.cell_name, path.parent
     # A stream is anybody's: a plain name only, and nothing but a cell file is read there.
     named = [folder / name, Path(name)] if name and Path(name).name == name else []
-    return find_cell(list(dict.fromkeys([*named, found.path.with_suffix(".toml")])), Place(str(found.path)))
+    return find_cell(list(dict.fromkeys([*named, path.with_suffix(".toml")])), Place(str(path)))
 
 
-def check_joints(found: Recorded, cell: Cell) -> None:
+def check_joints(header: StreamHeader, cell: Cell) -> None:
     """Raises CellError, IRL727, for a robot with other joints than the recorded one."""
-    expected, names = found.header.joint_names, cell.robot.joint_names
+    expected, names = header.joint_names, cell.robot.joint_names
     if expected != names:
         told = {"expected": ", ".join(expected), "found": ", ".join(names)}
         raise CellError(report("IRL727", Place(cell.file), **told))  # type: ignore[arg-type]
@@ -195,7 +200,7 @@ def _digest(path: Path) -> str:
     return digest.hexdigest()
 
 
-def _text_beside(path: Path, header: StreamHeader) -> SourceText | None:
+def text_beside(path: Path, header: StreamHeader) -> SourceText | None:
     """Text of the program, where its very file is beside the stream and all there is to it."""
     if Path(header.program_name).name != header.program_name:
         return None

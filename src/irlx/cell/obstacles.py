@@ -42,7 +42,7 @@ def read_obstacles(
 
 def _obstacle(section: ObstacleSection, frames: Frames, folder: Path, findings: Findings) -> Obstacle:
     """An obstacle; where something is wrong with it, without what is: `findings` tells then."""
-    base = _base(section, frames, findings)
+    base = base_of(section, frames, findings)
     _check_times(section.trajectory or [], findings)
     if section.margin > section.influence:
         findings.error("IRL633", "margin", margin=f"{section.margin:g}", influence=f"{section.influence:g}")
@@ -60,8 +60,8 @@ def _obstacle(section: ObstacleSection, frames: Frames, folder: Path, findings: 
     )
 
 
-def _base(section: ObstacleSection, frames: Frames, findings: Findings) -> Placement:
-    """Where the frame that an obstacle is placed in lies in the world."""
+def base_of(section: ObstacleSection, frames: Frames, findings: Findings) -> Placement:
+    """Where the frame that an obstacle is placed in lies in the world; IRL636, IRL646 go to `findings`."""
     name = section.frame
     if name is None:
         return Placement()

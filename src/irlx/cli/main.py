@@ -25,6 +25,7 @@ from irlx.cli import (
     robots,
     run,
     verify,
+    view,
 )
 from irlx.cli.output import exit_code, print_diagnostics
 from irlx.cli.parser import CommandParser
@@ -36,6 +37,7 @@ _COMMANDS = (
     fmt,
     blocks,
     verify,
+    view,
     plot,
     convert,
     robots,

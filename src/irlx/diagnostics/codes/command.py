@@ -24,6 +24,16 @@ COMMAND = (
         "{first} and {second} cannot be drawn over each other: {cause}",
         "compare streams of robots with the same joints",
     ),
+    error(
+        "IRL014",
+        "the page cannot be served on {where} of {host}: {cause}",
+        "name another port with --port, 0 for any that is free; --host 127.0.0.1 is this machine",
+    ),
+    warning(
+        "IRL015",
+        "{name} was made with another {robot} than the one of {cell}: what is shown is not where it was",
+        "name the cell that it was made in with --cell",
+    ),
     error("IRL016", "irlx has no command '{name}'{near}", "irlx --help lists the commands"),
     error("IRL017", "{command} has no option {option}{near}", "{command} --help lists its options"),
     warning("IRL019", "{what} is left out: {cause}"),
