@@ -16,7 +16,7 @@ _EXAMPLE = """\
 examples:
   irlx view programs/koch/square_slow.irl
   irlx view programs/window/window.irl --tick 20 --port 8090
-  irlx view square.irdata --cell programs/koch/square.toml --no-open
+  irlx view programs/koch/square.irdata --cell programs/koch/square.toml --no-open
 """
 
 

@@ -6,7 +6,9 @@ import errno
 import io
 import os
 import socket
+import threading
 from contextlib import redirect_stdout
+from dataclasses import dataclass
 from typing import Any
 
 from irlx.diagnostics import IrlxError, report
@@ -60,17 +62,34 @@ def _words(cause: OSError | None) -> str:
     return cause.strerror or str(cause)
 
 
-def serve(host: str, port: int, label: str) -> Any:
+@dataclass(frozen=True)
+class PageServer:
+    """A viser `server` that is running, and the threads that it has begun."""
+
+    server: Any
+    threads: tuple[threading.Thread, ...]
+
+    def stop(self) -> None:
+        """End it without a word on stdout; its threads say the last one, so that they are waited for."""
+        with redirect_stdout(io.StringIO()):
+            self.server.stop()
+            for thread in self.threads:
+                thread.join(timeout=10.0)
+
+
+def serve(host: str, port: int, label: str) -> PageServer:
     """A viser server without its own words on stdout and without the tunnel to other hosts that it offers.
 
     Raises IrlxError, IRL014, where somebody else has taken the port by now.
     """
     import viser
 
+    before = set(threading.enumerate())
     with redirect_stdout(io.StringIO()):
         server: Any = viser.ViserServer(host=host, port=port, label=label, verbose=False)
+    found = PageServer(server, tuple(set(threading.enumerate()) - before))
     if server.get_port() != port:
-        stop(server)
+        found.stop()
         raise IrlxError(report("IRL014", where=f"port {port}", host=host, cause="it is in use"))
     # Any page that is connected may ask for the tunnel: what is seen here stays on this machine.
     server.request_share_url = lambda verbose=True: None
@@ -81,10 +100,4 @@ def serve(host: str, port: int, label: str) -> Any:
         brand_color=(46, 125, 214),
     )
     server.gui.main_panel.dock_right()
-    return server
-
-
-def stop(server: Any) -> None:
-    """End a server without a word."""
-    with redirect_stdout(io.StringIO()):
-        server.stop()
+    return found

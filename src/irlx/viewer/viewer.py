@@ -5,7 +5,6 @@ from __future__ import annotations
 import threading
 from contextlib import suppress
 from types import TracebackType
-from typing import Any
 
 from irlx.cell.cell import Cell
 from irlx.cell.moved_obstacles import MovableObstacles
@@ -17,7 +16,7 @@ from irlx.viewer.panel import Actions, Panel
 from irlx.viewer.player import Player
 from irlx.viewer.rerun import Again, Rerun
 from irlx.viewer.robot_nodes import RobotNodes
-from irlx.viewer.serve import serve, stop
+from irlx.viewer.serve import serve
 from irlx.viewer.shown import Shown
 from irlx.viewer.surroundings import bounds_of, draw_surroundings, handle_size, look_at_it
 from irlx.viewer.trail import draw_trail
@@ -37,12 +36,13 @@ class Viewer:
         self._row = 0
         self._stopped = threading.Event()
         self._obstacles_of_cell = MovableObstacles(shown.cell)
-        self.server: Any = serve(host, port, shown.title)
+        self._served = serve(host, port, shown.title)
+        self.server = self._served.server
         self.url = f"http://{f'[{host}]' if ':' in host else host}:{port}"
         try:
             self._build(again)
         except BaseException:
-            stop(self.server)
+            self._served.stop()
             raise
 
     def _build(self, again: Again | None) -> None:
@@ -129,7 +129,7 @@ class Viewer:
         self._player.stop()
         if self._rerun is not None:
             self._rerun.stop()
-        stop(self.server)
+        self._served.stop()
 
     def _actions(self) -> Actions:
         player = self._player
