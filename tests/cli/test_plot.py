@@ -269,15 +269,3 @@ def test_clearances_of_a_run_and_of_its_file(tmp_path):
     figure = irlx.plot(tmp_path / "window.irdata", show=["clearance"])
     (measured,) = [found for found in figure.axes[0].lines if found.get_gid() == "curve 0"]
     np.testing.assert_allclose(measured.get_ydata()[1:], line.get_ydata()[1:], atol=0.01)
-
-
-def test_help_names_examples_that_work(inside, streams, capsys):
-    with pytest.raises(SystemExit):
-        inside("plot", "--help")
-    text = capsys.readouterr().out
-    (line,) = [line for line in text.splitlines() if "compared.svg" in line]
-    for name in ("square.irdata", "square_cyclic.irdata"):
-        (streams / name).write_bytes((streams / "a.irdata").read_bytes())
-    arguments = line.split()[2:]
-    arguments[arguments.index("7,11")] = "1,2"
-    assert inside(*["plot", *arguments]).returncode == 0
