@@ -7,6 +7,7 @@ import signal
 
 import pytest
 
+import irlx
 from irlx.cell.packaged import packaged_cell, packaged_urdf
 from irlx.report.figures import Figures
 from irlx.report.replay import writer
@@ -92,6 +93,16 @@ def test_pages_that_cannot_be(inside, folder, names, options, words, helps):
     assert done.stderr.startswith(words)
     assert helps in done.stderr
     assert names(folder) == ["folder.html", "link.html", *FILES, "twin.html"]
+
+
+def test_what_python_asks_for_is_looked_at_as_well(folder, names):
+    with pytest.raises(irlx.StreamError, match="IRL003"):
+        irlx.record(folder / "p.irl", [folder / "p.html", folder / "no" / "p.csv"])
+    with pytest.raises(irlx.StreamError, match="IRL003"):
+        irlx.record(folder / "p.irl", [folder / "p.csv", folder / "no" / "p.html"])
+    with pytest.raises(irlx.IrlxError, match="IRL006"):
+        irlx.record(folder / "p.irl", [folder / "p.html", folder / "q.html"])
+    assert names(folder) == FILES
 
 
 def test_the_program_cannot_write_over_its_page(inside, folder):

@@ -44,8 +44,13 @@ class FileRecording(Recorder):
         page: PageWriter | None = None,
     ) -> None:
         """Begin at posture `start` (n,), the tool at `pose`: rotation (3, 3), position (3,) m, world."""
-        self._figures, self._files = Figures(header, seen), _Files(header, outputs)
         self._page = page
+        try:
+            self._figures, self._files = Figures(header, seen), _Files(header, outputs)
+        except BaseException:
+            if page is not None:
+                page.abort()
+            raise
         keepers = (self._figures, self._files) if page is None else (self._figures, self._files, page)
         try:
             super().__init__(header, start, *pose, keepers)
