@@ -20,8 +20,8 @@ PAGES = Path(__file__).parents[2] / "docs" / "diagnostics"
 CODES = [
     code.id for group in (COMMAND, TYPES, DATA_LISTS, PACING, CLEARANCE, RUN, FILES, CELL) for code in group
 ]
-ELSEWHERE = {"IRL010", "IRL011", "IRL014", "IRL015", "IRL019"}
-"""Codes whose example takes streams, a port, or a package that is not there: tests of commands have them."""
+ELSEWHERE = {"IRL010", "IRL011", "IRL014", "IRL015", "IRL018", "IRL019"}
+"""Codes whose example takes streams, folders, a port, or a missing package: tests of commands have them."""
 IN_WORDS = {
     "IRL012",
     "IRL440",

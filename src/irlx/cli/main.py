@@ -18,6 +18,7 @@ from irlx.cli import (
     completion,
     conformance,
     convert,
+    demo,
     explain,
     fmt,
     new,
@@ -32,6 +33,7 @@ from irlx.cli.parser import CommandParser
 from irlx.diagnostics import IrlxError, report
 
 _COMMANDS = (
+    demo,
     run,
     check,
     fmt,
@@ -48,6 +50,7 @@ _COMMANDS = (
 )
 _EXAMPLE = """\
 examples:
+  irlx demo
   irlx run programs/koch/square.irl
   irlx check programs/koch/square.irl
   irlx verify programs/koch/square.irdata

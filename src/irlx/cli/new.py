@@ -43,11 +43,14 @@ def command(options: argparse.Namespace) -> int:
     cell, program = _files(options.name, options.force)
     model = _model(options)
     from irlx.cli.output import encodable, print_diagnostics
-    from irlx.first_program import first_program
+    from irlx.cli.progress import shown_status
 
-    found = first_program(program.stem, model, options.tip, cell.parent)
-    _write(cell, found.cell)
-    _write(program, found.program)
+    with shown_status("looking for first moves"):
+        from irlx.first_program import first_program
+
+        found = first_program(program.stem, model, options.tip, cell.parent)
+    write_text(cell, found.cell)
+    write_text(program, found.program)
     if found.warning is not None:
         print_diagnostics((found.warning,))
     print(encodable(_told(found, cell, program, model), sys.stdout))
@@ -92,23 +95,27 @@ def _files(name: str, force: bool) -> tuple[Path, Path]:
 
 def _model(options: argparse.Namespace) -> str:
     """What a cell calls the robot. Raises IrlxError, IRL006, for a robot by name that is none."""
-    from irlx.diagnostics import IrlxError, report
-    from irlx.diagnostics.diagnostic import near_matches
-
     if options.urdf is not None:
         given = str(options.urdf)
         # A name without a folder or an ending would be looked for among the robots known by name.
         return given if "/" in given or "." in given else f"./{given}"
+    return known_robot(options.robot)
+
+
+def known_robot(name: str) -> str:
+    """The name of a robot that irlx knows. Raises IrlxError, IRL006, for any other."""
     from irlx.cell.overview import robot_overviews
+    from irlx.diagnostics import IrlxError, report
+    from irlx.diagnostics.diagnostic import near_matches
 
     names = tuple(robot.name for robot in robot_overviews())
-    if options.robot not in names:
-        cause = f"no robot has this name{near_matches(options.robot, names)}"
-        raise IrlxError(report("IRL006", option="--robot", value=options.robot, cause=cause))
-    return str(options.robot)
+    if name not in names:
+        cause = f"no robot has this name{near_matches(name, names)}"
+        raise IrlxError(report("IRL006", option="--robot", value=name, cause=cause))
+    return name
 
 
-def _write(path: Path, text: str) -> None:
+def write_text(path: Path, text: str) -> None:
     """Write a file. Raises IrlxError, IRL003."""
     from irlx.diagnostics import IrlxError, report
 

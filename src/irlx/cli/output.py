@@ -74,6 +74,8 @@ def _styled(line: Line, stream: TextIO) -> Text:
 
     colour = {Tone.GOOD: "green", Tone.BAD: "red", Tone.CARE: "yellow", Tone.FIGURE: ""}[line.tone]
     words = encodable(line.words, stream)
+    if line.label is None and line.tone is Tone.FIGURE:
+        return Text(words)
     if line.label is None:
         mark = _MARKS[line.tone is Tone.GOOD]
         # A mark that the terminal has no character for is left out.

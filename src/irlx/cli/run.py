@@ -7,7 +7,6 @@ import json
 import os
 import sys
 from collections.abc import Iterable
-from contextlib import AbstractContextManager
 from dataclasses import replace
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, cast
@@ -15,6 +14,7 @@ from typing import IO, TYPE_CHECKING, Any, cast
 from irlx.cli.execution import add_execution_options, add_plugin_option, import_plugins, standard_input
 from irlx.cli.outputs import output_paths, page_path, written
 from irlx.cli.program_text import ProgramText, TypedInput
+from irlx.cli.progress import shown_progress
 
 if TYPE_CHECKING:
     from irlx.diagnostics import Diagnostic
@@ -122,7 +122,7 @@ def command(options: argparse.Namespace) -> int:
     from irlx.running import execute_to_files
 
     try:
-        with _progress(options, job) as progress:
+        with shown_progress(job, options.quiet or options.json) as progress:
             # A program whose text goes elsewhere does not disturb the line.
             text.first = progress.silence if progress is not None and sys.stdout.isatty() else None
             execution = Execution(job, watch=progress)
@@ -202,18 +202,6 @@ def _default_output(job: Job) -> Path:
     ending = f".replay{path.suffix}" if isinstance(job.program, Recorded) else ".irdata"
     beside = path.with_suffix(ending)
     return beside if os.access(beside.parent, os.W_OK) else Path(beside.name)
-
-
-def _progress(options: argparse.Namespace, job: Job) -> AbstractContextManager[Progress | None]:
-    """What shows how the run comes on: nothing where nobody looks."""
-    from contextlib import nullcontext
-
-    if options.quiet or options.json or not sys.stderr.isatty():
-        return nullcontext()
-    from irlx.report.progress import Course, LineProgress, LiveProgress
-
-    course = Course(job.tick_ns / 1e9, job.program.move_count, job.program.place)
-    return LineProgress(course) if os.environ.get("TERM") == "dumb" else LiveProgress(course)
 
 
 def _why(error: Diagnostic) -> str:

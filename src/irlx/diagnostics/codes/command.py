@@ -36,6 +36,11 @@ COMMAND = (
     ),
     error("IRL016", "irlx has no command '{name}'{near}", "irlx --help lists the commands"),
     error("IRL017", "{command} has no option {option}{near}", "{command} --help lists its options"),
+    error(
+        "IRL018",
+        "{path} is not empty, and irlx demo replaces nothing",
+        "name a folder that is empty or new: irlx demo {other}",
+    ),
     warning("IRL019", "{what} is left out: {cause}"),
     error(
         "IRL090",
