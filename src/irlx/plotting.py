@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -32,8 +32,13 @@ PathLike = str | os.PathLike[str]
 
 PICTURES = (".svg", ".png", ".pdf")
 """Endings of the figures that can be written."""
+COLUMNS, MILLIMETRES = (40, 1000), (100, 2000)
+"""Narrowest and widest diagrams in a terminal, and figures."""
 IN_TERMINAL = (Quantity.POSITION, Quantity.SPEED, Quantity.PATH_SPEED)
 """What is drawn in a terminal where nothing is asked for."""
+
+
+_ORDER = ("first", "second")
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +55,7 @@ def plot(
     run_or_path: Run | PathLike,
     other: Run | PathLike | None = None,
     *,
-    joints: Sequence[str | int] | None = None,
+    joints: Sequence[str | int] | str | int | None = None,
     show: Collection[str] | None = None,
     first: float | None = None,
     last: float | None = None,
@@ -60,9 +65,10 @@ def plot(
     """Figure of matplotlib of a run, or of a stream file of any format; with `other` both over each other.
 
     `joints` are names or numbers from 1, by default all; `show` any of 'position', 'speed', 'acceleration',
-    'singular', 'clearance' and 'path-speed', by default all that are known; `first` and `last` bound the
-    time, s; `cell` names the cell file, looked for as `irlx.verify` does without it; `width` in mm. What is
-    left out because robot or obstacles are not known is told by a warning (IRL019).
+    'singular', 'clearance' and 'path-speed', by default all that are known; both may be given as in the
+    command, '3,7'. `first` and `last` bound the time, s; `cell` names the cell file, looked for as
+    `irlx.verify` does without it; `width` in mm, 100 to 2000. What is left out because robot or obstacles
+    are not known is told by a warning (IRL019).
     Raises IrlxError: IRL010 where matplotlib is not installed (extra `plot`), IRL006 for what is not there,
     IRL011 where the joints of the two differ; StreamError and CellError for files that cannot be used.
     """
@@ -70,10 +76,11 @@ def plot(
     from irlx.report.plot.figure import draw_figure
 
     sources = [run_or_path] if other is None else [run_or_path, other]
-    found = plotted(sources, joints, show, (first, last), cell)
+    page = checked_width(width, MILLIMETRES, "mm")
+    found = plotted(sources, _listed(joints), _listed(show), (first, last), cell)
     for note in found.notes:
         warnings.warn(str(note), stacklevel=2)
-    return draw_figure(found.curves, found.joints, width)
+    return draw_figure(found.curves, found.joints, page)
 
 
 def plotted(
@@ -88,7 +95,7 @@ def plotted(
     wanted = QUANTITIES if show is None else quantities_named(show)
     given = None if cell is None else _loaded(Path(cell))
     asks = Quantity.SINGULAR in wanted or Quantity.CLEARANCE in wanted
-    subjects = [_subject(source, given, asks) for source in sources]
+    subjects = _named_apart([_subject(source, given, asks) for source in sources], sources)
     _check_joints(subjects)
     span = _window(subjects, window)
     chosen = None if joints is None else joints_named(joints, subjects[0].stream.header.joint_names)
@@ -114,6 +121,34 @@ def quantities_named(names: Collection[str]) -> tuple[Quantity, ...]:
             cause = f"not one of {', '.join(known)}{near_matches(name, known)}"
             raise IrlxError(report("IRL006", option="--show", value=name or "''", cause=cause))
     return tuple(quantity for quantity in QUANTITIES if quantity.value in names)
+
+
+def checked_width(width: float | None, bounds: tuple[int, int], unit: str) -> float | None:
+    """A width within bounds, None for none. Raises IrlxError, IRL006."""
+    least, most = bounds
+    if width is None or least <= width <= most:
+        return width
+    cause = f"needs {least} to {most} {unit}"
+    raise IrlxError(report("IRL006", option="--width", value=f"{width:g}", cause=cause))
+
+
+def _listed(given: Collection[Any] | str | int | None) -> Sequence[Any] | None:
+    """Names and numbers as a list, however they were given."""
+    if given is None:
+        return None
+    if isinstance(given, str):
+        return [entry.strip() for entry in given.split(",")]
+    return [given] if isinstance(given, int) else list(given)
+
+
+def _named_apart(subjects: Sequence[Subject], sources: Sequence[object]) -> list[Subject]:
+    """Subjects whose names differ: those of the same name by their paths, or as the first and the second."""
+    if len({subject.name for subject in subjects}) == len(subjects):
+        return list(subjects)
+    paths = [str(source) if isinstance(source, str | os.PathLike) else "" for source in sources]
+    if "" in paths or len(set(paths)) < len(paths):
+        paths = [f"{subject.name}, {which}" for subject, which in zip(subjects, _ORDER, strict=True)]
+    return [replace(subject, name=name) for subject, name in zip(subjects, paths, strict=True)]
 
 
 def _loaded(path: Path) -> Cell:

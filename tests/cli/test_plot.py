@@ -250,6 +250,35 @@ def test_from_python(run):
     assert both.get_figwidth() == pytest.approx(150.0 / 25.4)
 
 
+def test_from_python_as_in_the_command(streams):
+    listed = irlx.plot(streams / "a.irdata", joints="slide,1", show="position")
+    names = [text.get_text() for text in listed.texts]
+    assert names[:2] == ["slide, mm", "turn, deg"]
+    assert len(irlx.plot(streams / "a.irdata", joints=2, show="position").axes) == 1
+    with pytest.raises(irlx.IrlxError, match="IRL006: --width 1: needs 100 to 2000 mm"):
+        irlx.plot(streams / "a.irdata", width=1.0)
+    # Whoever saves it and shows it, with whatever settings of matplotlib.
+    import matplotlib as mpl
+
+    listed.savefig(streams / "one.svg")
+    with mpl.rc_context({"svg.fonttype": "none", "font.size": 30.0}):
+        listed.savefig(streams / "two.svg")
+    assert (streams / "one.svg").read_bytes() == (streams / "two.svg").read_bytes()
+    assert listed._repr_png_().startswith(b"\x89PNG")
+
+
+def test_two_of_the_same_name_are_told_apart(inside, streams, run):
+    (streams / "old").mkdir()
+    (streams / "old" / "a.irdata").write_bytes((streams / "a.irdata").read_bytes())
+    done = inside("plot", "old/a.irdata", "a.irdata", "--joints", "1", "--show", "position")
+    assert done.stdout.splitlines()[0] == "old/a.irdata (dashed) and a.irdata, drawer"
+    both = irlx.plot(run, run, joints=[7], show=["position"])
+    assert [text.get_text() for text in both.legends[0].get_texts()][:2] == [
+        "line.irl, first",
+        "line.irl, second",
+    ]
+
+
 def test_from_python_what_is_left_out_is_a_warning(streams):
     with pytest.warns(UserWarning, match="IRL019: singular is left out"):
         irlx.plot(str(streams / "b.npz"), show=["position", "singular"])

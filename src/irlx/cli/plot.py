@@ -15,8 +15,6 @@ examples:
   irlx plot programs/koch/square.irdata programs/koch/square_cyclic.irdata --joints 7,11 -o compared.svg
 """
 _SHOW = ("position", "speed", "acceleration", "singular", "clearance", "path-speed")
-_COLUMNS, _MILLIMETRES = (40, 1000), (100, 2000)
-"""Narrowest and widest diagrams in a terminal, and figures."""
 _FALLBACK = (80, 24)
 
 
@@ -71,12 +69,12 @@ def add_parser(commands: Any) -> None:
 def command(options: argparse.Namespace) -> int:
     """Write the figures, or print the curves on stdout; notes on what is left out go to stderr."""
     from irlx.cli.output import print_diagnostics
-    from irlx.plotting import IN_TERMINAL, plotted
+    from irlx.plotting import COLUMNS, IN_TERMINAL, MILLIMETRES, checked_width, plotted
     from irlx.report.plot.terminal import MOST_JOINTS
 
     sources = [options.stream] if options.other is None else [options.stream, options.other]
     outputs = _outputs(options)
-    width = _width(options.width, *(_MILLIMETRES if outputs else _COLUMNS))
+    width = checked_width(options.width, *((MILLIMETRES, "mm") if outputs else (COLUMNS, "columns")))
     show = _listed(options.show)
     if show is None and not outputs:
         show = [quantity.value for quantity in IN_TERMINAL]
@@ -110,10 +108,11 @@ def _print(found: Any, width: float | None) -> None:
     from shutil import get_terminal_size
 
     from irlx.cli.output import coloured, encodable
+    from irlx.plotting import COLUMNS
     from irlx.report.plot.terminal import terminal_text
 
     columns = int(width) if width is not None else get_terminal_size(_FALLBACK).columns
-    columns = min(max(columns, _COLUMNS[0]), _COLUMNS[1])
+    columns = min(max(columns, COLUMNS[0]), COLUMNS[1])
     text = terminal_text(found.curves, found.joints, columns, coloured=coloured(sys.stdout))
     print(encodable(text, sys.stdout))
 
@@ -146,14 +145,3 @@ def _outputs(options: argparse.Namespace) -> list[Path]:
 def _listed(text: str | None) -> list[str] | None:
     """Entries of a list with commas, None for none."""
     return None if text is None else [entry.strip() for entry in text.split(",")]
-
-
-def _width(given: float | None, least: int, most: int) -> float | None:
-    """A width in its bounds. Raises IrlxError, IRL006."""
-    if given is None or least <= given <= most:
-        return given
-    from irlx.diagnostics import IrlxError, report
-
-    unit = "columns" if (least, most) == _COLUMNS else "mm"
-    cause = f"needs {least} to {most} {unit}"
-    raise IrlxError(report("IRL006", option="--width", value=f"{given:g}", cause=cause))

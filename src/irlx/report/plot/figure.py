@@ -30,27 +30,12 @@ from irlx.report.plot.panel import (
     finish,
 )
 from irlx.report.plot.quantity import JOINT_QUANTITIES, QUANTITIES, Quantity
+from irlx.report.plot.styled_figure import STYLE, StyledFigure
 from irlx.streams.atomic import AtomicFile
 
 PAGE_WIDTH = 10.0
 """Width of a figure where none is asked for, inches."""
 
-_STYLE: Any = {
-    "font.family": "DejaVu Sans",
-    "font.size": 8.0,
-    "axes.linewidth": 0.6,
-    "xtick.direction": "in",
-    "ytick.direction": "in",
-    "xtick.top": True,
-    "ytick.right": True,
-    "xtick.major.width": 0.6,
-    "ytick.major.width": 0.6,
-    "axes.unicode_minus": True,
-    # Letters as outlines: a picture is the same where the font is not installed.
-    "svg.fonttype": "path",
-    "svg.hashsalt": "irlx",
-    "pdf.fonttype": 42,
-}
 _HEAD, _FOOT, _RIGHT, _GAP, _AXIS = 0.92, 0.44, 0.14, 0.13, 0.38
 """Room above, below and to the right of the diagrams, between rows, and for a time axis between; inches."""
 _LETTER = 0.075
@@ -110,8 +95,8 @@ def draw_figure(all_curves: Sequence[Curves], joints: Sequence[int], width: floa
     mixed = len({first.units[joint] for joint in joints}) > 1
     labels = [_label(first, joint, mixed) for joint in joints] if rows else []
     page = _page(labels, rows, len(tracks), PAGE_WIDTH if width is None else width / 25.4)
-    with mpl.rc_context(_STYLE):
-        figure = Figure(figsize=(page.width, page.height))
+    with mpl.rc_context(STYLE):
+        figure = StyledFigure(figsize=(page.width, page.height))
         span = _time_span(all_curves)
         upper, lower = _grids(figure, page, len(quantities))
         made: list[list[Axes]] = []
@@ -138,10 +123,8 @@ def save_figure(figure: Figure, path: Path) -> None:
 
     Raises StreamError, IRL003, where the file cannot be written.
     """
-    dates = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
-    ending = path.suffix.lower()
-    with mpl.rc_context(_STYLE), AtomicFile(path) as file:
-        figure.savefig(file.handle, format=ending[1:], dpi=150, metadata=dates.get(ending))
+    with AtomicFile(path) as file:
+        figure.savefig(file.handle, format=path.suffix[1:].lower())
 
 
 def _label(curves: Curves, joint: int, mixed: bool) -> str:
