@@ -19,17 +19,17 @@ function viewAxes(toCamera) {
 }
 
 /**
- * Direction from which movement is seen best: where the postures and the trail spread widest,
+ * Direction from which movement is seen best: where postures, trail and what stands around spread widest,
  * the usual view from the front right being preferred unless another shows clearly more.
  */
-export function bestDirection(postures, trail) {
+export function bestDirection(postures, trail, around) {
   let [best, most] = [direction(USUAL.azimuth, USUAL.elevation), 0];
   for (const elevation of ELEVATIONS) {
     for (let k = 0; k < AZIMUTHS; k += 1) {
       const azimuth = USUAL.azimuth + (360 * k) / AZIMUTHS;
       const candidate = direction(azimuth, elevation);
       const usual = (elevation === USUAL.elevation ? 1.5 : 1) * (1 + 0.15 * Math.cos((2 * Math.PI * k) / AZIMUTHS));
-      const seen = usual * (spread(postures, candidate) + 2 * spread(trail, candidate));
+      const seen = usual * (spread(postures, candidate) + 2 * spread(trail, candidate) + 0.5 * spread(around, candidate));
       if (seen > most) [best, most] = [candidate, seen];
     }
   }

@@ -12,6 +12,7 @@ import { Kinematics } from '../kinematics.js';
 import { triad } from './triad.js';
 import { View } from './view.js';
 
+const STATUS = 34; // px at the top of the view, where the line in execution stands
 const POSTURES = 16; // postures by which the camera is fitted
 
 export class Stage {
@@ -72,11 +73,11 @@ export class Stage {
     const open = Math.tan((camera.fov * Math.PI) / 360);
     const [across, up] = [open * camera.aspect * 0.94, open * 0.94];
     const { width = 1, height = 1 } = this.view;
-    const whole = { left: across, right: across, top: up, bottom: up };
+    const room = (share) => Math.max(0.25, 1 - 2 * share);
+    const whole = { left: across, right: across, top: up * room(STATUS / height), bottom: up };
     // Beside what covers the corner, or below it: where the camera can come nearer.
-    const left = (share) => Math.max(0.25, 1 - 2 * share);
-    const beside = { ...whole, left: across * left(this.covered.width / width) };
-    const below = { ...whole, top: up * left(this.covered.height / height) };
+    const beside = { ...whole, left: across * room(this.covered.width / width) };
+    const below = { ...whole, top: up * room(Math.max(STATUS, this.covered.height) / height) };
     const [{ position, target }] = [beside, below]
       .map((slopes) => fitCamera(this.points, this.direction, slopes))
       .sort((a, b) => a.depth - b.depth);
@@ -123,7 +124,7 @@ export class Stage {
     this.points = [...this.outline, ...trail, ...around];
     this.sphere = new Box3().setFromPoints(this.points).getBoundingSphere(new Sphere());
     this.sphere.radius = Math.max(this.sphere.radius, 0.01);
-    this.direction = bestDirection(this.outline, trail);
+    this.direction = bestDirection(this.outline, trail, around);
     this.view.lightUp(this.sphere.center, this.sphere.radius * 1.3);
   }
 
