@@ -14,6 +14,7 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 from PIL import Image
 from playwright.sync_api import Browser, sync_playwright
 
@@ -22,8 +23,10 @@ import irlx
 HERE = Path(__file__).resolve().parent
 PROGRAMS = HERE.parents[1] / "programs"
 ARGUMENTS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-first-run")
-COLOURS = 255
-"""Of a picture: so few that it stays small, and hardly anyone sees it."""
+COLOURS, OF_LINES = 255, 72
+"""Of a picture, and of its lines: so few that it stays small, and hardly anyone sees it."""
+VIVID = 90
+"""How far apart red, green and blue of a pixel are that is not grey."""
 
 
 @dataclass(frozen=True)
@@ -73,8 +76,23 @@ def draw(picture: Picture, browser: Browser, folder: Path) -> None:
     page.wait_for_timeout(500)
     seen = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
     page.close()
-    few = seen.quantize(COLOURS, kmeans=2, dither=Image.Dither.FLOYDSTEINBERG)
+    few = seen.quantize(palette=palette_of(seen), dither=Image.Dither.NONE)
     few.save(HERE / f"page_{picture.name}.png", optimize=True)
+
+
+def palette_of(picture: Image.Image) -> Image.Image:
+    """Colours for a picture: those of its large areas, and of the thin lines and dots that tell something.
+
+    A part of the choice is made among its vivid pixels alone, which are so few that they would get none.
+    """
+    pixels = np.asarray(picture).reshape(-1, 3)
+    vivid = pixels[np.ptp(pixels, axis=1) > VIVID]
+    lines = Image.fromarray(vivid[np.newaxis])
+    parts = ((picture, COLOURS - OF_LINES), (lines, OF_LINES))
+    chosen = [part.quantize(count, kmeans=1).getpalette() for part, count in parts]
+    palette = Image.new("P", (1, 1))
+    palette.putpalette([value for colours in chosen for value in colours])
+    return palette
 
 
 if __name__ == "__main__":
