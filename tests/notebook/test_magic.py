@@ -57,10 +57,13 @@ def test_a_program_runs_and_its_run_is_the_result_and_a_variable(shell, cell):
     assert irlx.verify(run).passed
 
 
-def test_a_run_is_shown_as_its_summary(shell, cell):
+def test_a_run_is_shown_as_its_summary_and_a_replay(shell, cell):
     run, *_ = cell(f"{ARM} --name down\n{GOOD}")
     text = shell.display_formatter.format(run)[0]["text/plain"]
     assert text.startswith("notebook.irl: complete, ")
+    html = shell.display_formatter.format(run)[0]["text/html"]
+    assert "<caption" in html
+    assert "srcdoc" in html
     assert repr(run).startswith(f"<Run of notebook.irl: complete, {run.t[-1]:.6g} s, ")
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -62,12 +61,12 @@ def command(options: argparse.Namespace) -> int:
     import_plugins(options.plugin)
     subject = _subject(options)
     print_diagnostics(subject.errors or subject.shown.diagnostics)
-    from irlx.viewer.view import opened
+    from irlx.viewer.view import serve_until_ctrl_c
+    from irlx.viewer.viewer import Viewer
 
-    # Ctrl-C is how it ends, also in the moment before it waits.
-    with suppress(KeyboardInterrupt), opened(subject, options.host, port, not options.no_open) as viewer:
-        print_diagnostics(viewer.diagnostics)
-        viewer.wait()
+    viewer = Viewer(subject.shown, subject.again, options.host, port)
+    print_diagnostics(viewer.diagnostics)
+    serve_until_ctrl_c(viewer, not options.no_open)
     return exit_code(subject.errors)
 
 

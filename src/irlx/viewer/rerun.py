@@ -22,7 +22,7 @@ class _Given(BaseException):
 class Rerun:
     """At most one run at a time, in a thread of its own.
 
-    `began` is called when it begins, `going` with line and time (s) as it goes on, and at its end either
+    `going` is called with line and time (s) as it goes on, at its end either
     `done` with what is to be shown or `failed` with the diagnostics.
     """
 
@@ -66,7 +66,7 @@ class Rerun:
 
     def _run(self, cell: Callable[[], Cell]) -> None:
         try:
-            shown = self._again(cell(), self._progress)
+            self._done(self._again(cell(), self._progress))
         except IrlxError as error:
             self._failed(error.diagnostics)
         except _Given:
@@ -74,8 +74,6 @@ class Rerun:
         except Exception as error:
             # A fault of irlx must not take the page with it.
             self._failed((report("IRL090", cause=f"{type(error).__name__}: {error}"),))
-        else:
-            self._done(shown)
 
     def _progress(self, block: Block, seconds: float) -> None:
         if self._given_up:

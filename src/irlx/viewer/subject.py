@@ -43,8 +43,13 @@ def subject_of_job(job: Job, progress: Progress | None = None) -> Subject:
 
 def subject_of_run(run: Run, cell: Path | None = None) -> Subject:
     """A run that has been made; its program is not there to be run again."""
-    path = Path(run.header.program_name or "run")
-    return Subject(shown_run(run, _cell(path, run.stream, cell), text_beside(path, run.header)))
+    path, source = Path(run.header.program_name or "run"), run.source
+    of_run = source.cell if source is not None and cell is None else _cell(path, run.stream, cell)
+    if source is None or source.program_text is None:
+        text = text_beside(path, run.header)
+    else:
+        text = SourceText(str(path), source.program_text)
+    return Subject(shown_run(run, of_run, text))
 
 
 def subject_of_stream(path: Path, cell: Path | None = None) -> Subject:

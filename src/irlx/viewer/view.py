@@ -38,20 +38,27 @@ def view(
     """
     require_viewer()
     number = free_port(host, port)
-    viewer = opened(_subject(run_or_program, cell, tick_ms), host, number, open_page)
+    subject = _subject(run_or_program, cell, tick_ms)
+    viewer = Viewer(subject.shown, subject.again, host, number)
     if block:
-        with suppress(KeyboardInterrupt), viewer:
-            viewer.wait()
+        serve_until_ctrl_c(viewer, open_page)
+    else:
+        _announce(viewer, open_page)
     return viewer
 
 
-def opened(subject: Subject, host: str, port: int, open_page: bool) -> Viewer:
-    """The viewer of a subject; its address is told on stdout, and its page opened where there is a screen."""
-    viewer = Viewer(subject.shown, subject.again, host, port)
+def serve_until_ctrl_c(viewer: Viewer, open_page: bool) -> None:
+    """Tell the viewer's address, open its page where there is a screen, and wait; then it is gone."""
+    # Ctrl-C is how it ends, also in the moment before it waits.
+    with suppress(KeyboardInterrupt), viewer:
+        _announce(viewer, open_page)
+        viewer.wait()
+
+
+def _announce(viewer: Viewer, open_page: bool) -> None:
     print(f"irlx view: {viewer.url} (Ctrl-C ends it)", flush=True)
     if open_page and _has_screen():
         webbrowser.open(viewer.url)
-    return viewer
 
 
 def _has_screen() -> bool:
