@@ -129,6 +129,17 @@ def test_other_commands(place, inside, arguments):
     assert done.stdout.strip()
 
 
+@pytest.mark.req("STR-06")
+def test_the_verdict_of_the_verifier(place, inside):
+    (place / "cut.irdata").write_text("100, 1 ;\n", encoding="utf-8")
+    code, told, _ = seen(["verify", "cut.irdata"], place)
+    assert code == 1
+    assert lines_of(told)[-1].startswith("\N{BALLOT X} FAILED: ")
+    done = inside("verify", place / "cut.irdata")
+    assert done.stdout.splitlines()[-1].startswith("FAILED: ")
+    assert done.stdout == f"{irlx.verify(place / 'cut.irdata')}\n"
+
+
 def test_mistakes_are_coloured_at_a_terminal_alone(place, inside):
     (place / "wrong.irl").write_text("PROGRAM wrong;\nBEGIN\n  MOVE LIN;\nENDPROGRAM;\n", encoding="utf-8")
     code, told, _ = seen(["check", "wrong.irl"], place)

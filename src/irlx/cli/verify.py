@@ -35,10 +35,15 @@ def add_parser(commands: Any) -> None:
 
 def command(options: argparse.Namespace) -> int:
     """Print the table of checks on stdout; 1 where one fails."""
-    from irlx.cli.output import encodable
+    from irlx.cli.output import encodable, print_lines
+    from irlx.report.lines import Line, Tone
     from irlx.verification import verify
 
     report = verify(options.stream, options.program, options.cell, options.max_steps)
-    words = json.dumps(report.to_plain(), indent=2) if options.json else str(report)
-    print(encodable(words, sys.stdout))
+    if options.json:
+        print(encodable(json.dumps(report.to_plain(), indent=2), sys.stdout))
+    else:
+        *table, verdict = str(report).splitlines()
+        told = Line(None, verdict, Tone.GOOD if report.passed else Tone.BAD)
+        print_lines([*(Line(None, words) for words in table), told])
     return 0 if report.passed else 1
