@@ -24,6 +24,9 @@ Array = NDArray[np.float64]
 SLOWED = 0.98
 """Share of the programmed speed below which a row counts as slowed."""
 
+_FARTHEST = 1e6
+"""Distance from the world's origin, m, from which on a pose is none."""
+
 _SAME = 1e-6
 """What a tick may differ from the programmed time and still be as programmed, as a part of it."""
 
@@ -96,6 +99,8 @@ def _shares(stream: JointStream, move: MoveRows) -> Array | None:
 
 def _planned(tool: Array, block: MoveBlock, dt: float) -> PlannedPath | None:
     """Path and law of a move whose tool poses are `tool` (M, 7); None where they cannot be told."""
+    if not _sane(tool):
+        return None
     start, end = (Rotation.from_quat(row[3:]).as_matrix() for row in (tool[0], tool[-1]))
     place = Place(block.origin.file)
     try:
@@ -111,6 +116,11 @@ def _planned(tool: Array, block: MoveBlock, dt: float) -> PlannedPath | None:
         return None
     off = float(np.linalg.norm(planned.path.end_position - tool[-1, :3]))
     return planned if off <= 2.0 * PATH_POSITION else None
+
+
+def _sane(tool: Array) -> bool:
+    """Whether rows are poses at all: a file may hold any numbers."""
+    return bool(np.all(np.abs(tool[:, :3]) < _FARTHEST) and np.all(np.abs(tool[:, 3:]).max(axis=1) > 0.1))
 
 
 def _spans(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:

@@ -34,6 +34,9 @@ than programmed, since a plan keeps a reserve."""
 MOST_ROWS = 3000
 """Rows in which singular values and clearances are worked out; of longer streams every k-th."""
 
+_LARGEST = 1e100
+"""Largest number that is drawn: with greater ones ranges of diagrams are no numbers any more."""
+
 _TURNING = np.radians(0.1)
 """Speed of turn, rad/s, below which a tool counts as not turning at all."""
 
@@ -58,6 +61,14 @@ def curves_of(
 
     Rates are backward differences, from rest before the first row, whatever the window.
     """
+    # A file may hold any numbers; differences of the largest ones are infinite.
+    with np.errstate(over="ignore", invalid="ignore"):
+        return _curves_of(subject, show, window)
+
+
+def _curves_of(
+    subject: Subject, show: Collection[Quantity], window: tuple[float, float]
+) -> tuple[Curves, list[Diagnostic]]:
     stream, outline = subject.stream, outline_of_stream(subject.stream)
     inside = np.flatnonzero((stream.t >= window[0]) & (stream.t <= window[1]))
     header = stream.header
@@ -77,7 +88,7 @@ def curves_of(
         t=stream.t[inside],
         joint_names=header.joint_names,
         units=tuple("mm" if unit == "m" else "deg" for unit in header.joint_units),
-        values={quantity: joint_rows[quantity.value][inside] * scale for quantity in quantities},
+        values={q: _drawable(joint_rows[q.value][inside] * scale) for q in quantities},
         bounds={quantity: _bounds(stream, limits, quantity, scale, window) for quantity in quantities},
         limit_spans=tuple(
             span
@@ -89,6 +100,11 @@ def curves_of(
         tracks=tracks,
     )
     return curves, notes
+
+
+def _drawable(values: Array) -> Array:
+    """Values that diagrams have room for."""
+    return np.clip(np.nan_to_num(values), -_LARGEST, _LARGEST)
 
 
 def _bounds(
@@ -171,7 +187,7 @@ def _moves(stream: JointStream, window: tuple[float, float]) -> tuple[MoveMark, 
 
 def _tool_tracks(stream: JointStream, speed: Array, turn: Array, inside: Integers) -> tuple[Track, ...]:
     """Speed of the tool, and that of its turn where it turns, each with what was programmed."""
-    way, turned = tool_rates(stream.tool, stream.dt)
+    way, turned = (_drawable(rate) for rate in tool_rates(stream.tool, stream.dt))
     t, name = stream.t[inside], "programmed"
     found = [Track("tool speed", "mm/s", t, way[inside] * 1e3, speed[inside] * 1e3, name, stepped=True)]
     if np.any(turned[inside] > _TURNING):

@@ -143,8 +143,8 @@ def _set_range(axes: Axes, values: Array, above: float) -> None:
     """Range of a diagram, with a part of it left free `above`. Joints that stand still get one as wide as
     their unit, not one of rounding."""
     least, most = float(values.min()), float(values.max())
-    whole = most - least
-    axes.set_ylim(least - max(0.1 * whole, 0.5), most + max(above * whole, 0.5))
+    whole, smallest = most - least, max(0.5, 1e-9 * abs(most))
+    axes.set_ylim(least - max(0.1 * whole, smallest), most + max(above * whole, smallest))
 
 
 def _draw_limits(axes: Axes, all_curves: Sequence[Curves], quantity: Quantity, joint: int) -> None:

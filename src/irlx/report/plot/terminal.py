@@ -164,7 +164,9 @@ def _range(curves: Sequence[Array], limits: Sequence[Array], base: float | None)
     near = bounds[(bounds >= low - _REACH * room) & (bounds <= high + _REACH * room)]
     low, high = float(np.min(near, initial=low)), float(np.max(near, initial=high))
     wide_enough = high - low >= 0.5 or (base is not None and high > low)
-    return (low, high) if wide_enough else (low - 0.5, high + 0.5)
+    # Beside the largest numbers half a unit is nothing.
+    more = 0.0 if wide_enough else max(0.5, 1e-9 * abs(low))
+    return low - more, high + more
 
 
 def _canvas(
