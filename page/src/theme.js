@@ -4,6 +4,7 @@ const dark = matchMedia('(prefers-color-scheme: dark)');
 
 export class Theme {
   #listeners = [];
+  #colours = new Map();
 
   constructor() {
     this.root = document.documentElement;
@@ -29,10 +30,13 @@ export class Theme {
 
   /** Value of a colour of the style sheet, `--name`. */
   colour(name) {
-    return getComputedStyle(this.root).getPropertyValue(`--${name}`).trim();
+    if (!this.#colours.has(name))
+      this.#colours.set(name, getComputedStyle(this.root).getPropertyValue(`--${name}`).trim());
+    return this.#colours.get(name);
   }
 
   #apply() {
+    this.#colours.clear();
     this.root.dataset.theme = this.isDark ? 'dark' : 'light';
     for (const listener of this.#listeners) listener(this);
   }

@@ -10,7 +10,7 @@ export function shownUnit(unit) {
 /** A number with as many decimals as its size deserves, with a true minus sign. */
 export function figure(value, digits = 4) {
   if (value === null || value === undefined || !Number.isFinite(value)) return '–';
-  const size = Math.abs(value);
+  const size = Math.abs(Number(value.toPrecision(digits)));
   if (size < 0.5 * 10 ** (1 - digits)) return '0';
   const decimals = size >= 1 ? Math.max(0, digits - 1 - Math.floor(Math.log10(size))) : digits - 1;
   return withSign(value.toFixed(Math.min(decimals, 6)));

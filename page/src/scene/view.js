@@ -93,7 +93,7 @@ export class View {
 
   resize() {
     const { clientWidth: width, clientHeight: height } = this.host;
-    if (!width || !height) return;
+    if (!width || !height || (width === this.width && height === this.height)) return;
     this.width = width;
     this.height = height;
     this.renderer.setSize(width, height);
