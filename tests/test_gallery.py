@@ -1,6 +1,7 @@
 """The gallery: every picture that the README shows is one that the script draws, of a program that exists."""
 
 import ast
+import importlib.util
 import re
 from pathlib import Path
 
@@ -31,3 +32,30 @@ def test_pictures_are_there_and_small():
         assert picture.startswith(b"\x89PNG")
         assert int.from_bytes(picture[16:20], "big") == 800
         assert len(picture) < 200_000
+
+
+def all_commands():
+    spec = importlib.util.spec_from_file_location("all_pictures", PICTURES / "__main__.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return [" ".join(command) for command in module.commands()]
+
+
+def test_one_command_draws_every_picture():
+    drawing = all_commands()
+    assert all((ROOT / command.split()[0]).is_file() for command in drawing)
+    drawn_kinds = {Path(command.split()[0]).stem.removeprefix("draw_") for command in drawing}
+    drawn_kinds |= {"experiment"} if "experiments" in drawn_kinds else set()
+    pictures = [path for path in PICTURES.iterdir() if path.suffix in (".png", ".svg")]
+    assert len(pictures) >= 25
+    for picture in pictures:
+        assert picture.stem.partition("_")[0] in drawn_kinds, picture.name
+
+
+def test_experiments_are_drawn_as_their_page_says():
+    page = (ROOT / "docs" / "experiments.md").read_text(encoding="utf-8")
+    told = re.findall(
+        r"`python (programs/koch/experiments\.py \d\.\d --joints .* --out docs/pictures)`", page
+    )
+    assert len(told) == 6
+    assert set(told) <= set(all_commands())
