@@ -10,14 +10,13 @@ from numpy.typing import NDArray
 
 from irlx.robot.kinematics import Kinematics, Sizes
 from irlx.transform.compact import StepProblem
+from irlx.transform.least_squares import least_squares_in_bounds
 from irlx.transform.metric import rows_over
 
 Array = NDArray[np.float64]
 
 _DAMPING = 1e-3
 _NO_ROOM = 1e-12
-_FINE = 1e-15
-_EVALUATIONS = 100
 
 
 def scaled_singular_values(jacobian: Array, row_scale: Array) -> Array:
@@ -66,40 +65,17 @@ def nearest_in_bounds(
     Frozen joints stay. Least squares of what is left, displacements divided by the robot's reach. Used where
     Newton steps find nothing: its residual says how far the robot falls short.
     """
-    from scipy.optimize import least_squares
-
     scale = kinematics.row_scale
     movable = free & (upper - lower > _NO_ROOM)
+    full: Array = np.where(free, np.clip(q, lower, upper), q)
 
-    def posture(x: Array) -> Array:
-        full: Array = np.clip(q, lower, upper)
-        full[~free] = q[~free]
+    def residual(x: Array) -> tuple[Array, Array]:
         full[movable] = x
-        return full
+        left, derivative = kinematics.difference_derivative(full, target)
+        return scale * left, scale[:, None] * derivative[:, movable]
 
-    def residual(x: Array) -> Array:
-        return np.asarray(scale * kinematics.difference(posture(x), target)[0])
-
-    def derivative(x: Array) -> Array:
-        _, jacobian = kinematics.difference_derivative(posture(x), target)
-        return np.asarray(scale[:, None] * jacobian[:, movable])
-
-    def found_at(q: Array) -> Nearest:
-        left = kinematics.difference(q, target)[0]
-        return Nearest(q, left, kinematics.sizes(left))
-
-    if not np.any(movable):
-        return found_at(q)
-    low, high = lower[movable], upper[movable]
-    start = np.clip(q[movable], low, high)
-    found = least_squares(
-        residual,
-        start,
-        derivative,
-        bounds=(low, high),
-        xtol=_FINE,
-        ftol=_FINE,
-        gtol=_FINE,
-        max_nfev=_EVALUATIONS,
-    )
-    return found_at(posture(found.x))
+    if np.any(movable):
+        low, high = lower[movable], upper[movable]
+        full[movable] = least_squares_in_bounds(residual, full[movable], low, high)
+    left = kinematics.difference(full, target)[0]
+    return Nearest(full, left, kinematics.sizes(left))
