@@ -77,26 +77,34 @@ def elastic_walk(
     q = np.empty((grid.intervals + 1, start.size))
     stretch = np.zeros(grid.intervals)
     q[0] = start
-    elapsed = 0.0
+    elapsed, held = 0.0, False
+    active: NDArray[np.int8] | None = None
     for i in range(grid.intervals):
         target = targets[i + 1]
         room = Room.at(model, q[i], (bounds[0][i + 1], bounds[1][i + 1]), reserve, float(grid.times[i]))
         criterion = criterion_of(float(grid.s[i + 1]), float(grid.s[i + 1] - grid.s[i])).begun(q[i])
         keeping = _kept_clear(model, q[i], room.duration, elapsed, reserve)
         problem = TickProblem(target, q[i], room.none(), criterion, model.free, keeping)
+        continued = _continued(grid.s, q, i)
         if isinstance(solver, RoughTickSolver):
-            inside = solver.at_once(problem._replace(bounds=room.unstretched()), _continued(grid.s, q, i))
+            inside = solver.at_once(problem._replace(bounds=room.unstretched()), continued)
             if isinstance(inside, TickSolution):
                 q[i + 1] = rounded_inside(inside.q, model.limits)
                 elapsed += room.duration
                 continue
-        easy = solver.solve(problem, thorough=False)
-        if easy.solved and room.holds(easy.q - q[i]):
-            q[i + 1] = rounded_inside(easy.q, model.limits)
-            elapsed += room.duration
-            continue
-        begin = easy.q - q[i] if easy.solved else np.zeros(start.size)
-        found = _Stretch(model, solver, problem, room, settled).solve(begin)
+        begin = continued
+        if not held:
+            easy = solver.solve(problem, thorough=False)
+            if easy.solved and room.holds(easy.q - q[i]):
+                q[i + 1] = rounded_inside(easy.q, model.limits)
+                elapsed += room.duration
+                continue
+            if i == 0:
+                begin = easy.q - q[i] if easy.solved else np.zeros(start.size)
+        elastic = _Stretch(model, solver, problem, room, settled, active)
+        found = elastic.solve(begin)
+        if found is None:
+            found = elastic.solve(np.zeros(start.size))
         if found is None and keeping is not None:
             # How fast the path itself leads near something is for the clock: the margins are left.
             problem = problem._replace(
@@ -108,6 +116,7 @@ def elastic_walk(
             if not last.solved:
                 return Passage(q[: i + 1], stretch[:i], (i, last), elapsed + room.duration)
             found = last.q - q[i], room.stretch_of(last.q - q[i])
+        held, active = not room.is_wide_for(found[0]), elastic.active
         q[i + 1] = rounded_inside(q[i] + found[0], model.limits)
         stretch[i] = found[1]
         elapsed += room.duration * (1.0 + found[1])
@@ -133,9 +142,12 @@ class _Stretch:
         problem: TickProblem,
         room: Room,
         settled: float,
+        active: NDArray[np.int8] | None = None,
     ) -> None:
         self._model, self._solver, self._room, self._settled = model, solver, room, settled
         self._problem = problem
+        self.active = active
+        """Rows held in the last round; those of the interval before are a good guess."""
         speed = np.minimum(model.limits.speed_upper, -model.limits.speed_lower)
         speed = np.where(np.isfinite(speed), speed, 1.0)
         # A price in the units of the motion's own cost: one unit of stretch costs the motion at all limits.
@@ -172,32 +184,33 @@ class _Stretch:
         if problem.sides is not None:
             matrix = problem.sides.matrix
             sides = SideRows(matrix @ rows, problem.sides.lower - matrix @ d_free)
-        found = _elastic_step(rows, whole[free] + d_free, _reduced(room, free), self._price, sides)
+        asked = rows, whole[free] + d_free, _reduced(room, free), self._price, sides
+        found = _one_unknown(*asked) if rows.shape[1] == 1 else self._many_unknowns(*asked)
         if found is None:
             return None
         step = np.zeros(whole.size)
         step[free] = found[0]
         return step, found[1]
 
+    def _many_unknowns(
+        self, rows: Array, target: Array, room: Room, price: float, sides: SideRows | None
+    ) -> tuple[Array, float] | None:
+        found, self.active = _many_unknowns(rows, target, room, price, sides, self.active)
+        return found
+
 
 def _reduced(room: Room, free: NDArray[np.bool_]) -> Room:
     return Room(room.low[free], room.high[free], room.down[free], room.up[free], room.duration)
 
 
-def _elastic_step(
-    rows: Array, target: Array, room: Room, price: float, sides: SideRows | None = None
-) -> tuple[Array, float] | None:
-    """Minimise 1/2 |z|^2 + price (eps + eps^2 / 2000), D = target + rows z; returns D and eps.
-
-    `sides` are inequalities of z that are kept whatever the price.
-    """
-    solve = _one_unknown if rows.shape[1] == 1 else _many_unknowns
-    return solve(rows, target, room, price, sides)
-
-
 def _many_unknowns(
-    rows: Array, target: Array, room: Room, price: float, sides: SideRows | None
-) -> tuple[Array, float] | None:
+    rows: Array,
+    target: Array,
+    room: Room,
+    price: float,
+    sides: SideRows | None,
+    guess: NDArray[np.int8] | None,
+) -> tuple[tuple[Array, float] | None, NDArray[np.int8]]:
     """With e = scale (eps + offset) the price is half a square, and all is a least-norm problem in (z, e)."""
     count, unknowns = rows.shape
     scale, offset = np.sqrt(_CURVATURE * price), 1.0 / _CURVATURE
@@ -217,10 +230,13 @@ def _many_unknowns(
         matrix = np.vstack([matrix, np.pad(sides.matrix, ((0, 0), (0, 1)))])
         lower = np.concatenate([lower, sides.lower])
         upper = np.concatenate([upper, np.full(len(sides.lower), np.inf)])
-    z = DualSolver().solve(matrix, lower, upper).z
+    known = guess if guess is not None and len(guess) == len(lower) else None
+    found = DualSolver().solve(matrix, lower, upper, known)
+    z = found.z
     if z is None:
-        return None
-    return target + rows @ z[:unknowns], max(float(z[unknowns]) / scale - offset, 0.0)
+        return None, found.active
+    step = target + rows @ z[:unknowns]
+    return (step, max(float(z[unknowns]) / scale - offset, 0.0)), found.active
 
 
 def _kept_clear(

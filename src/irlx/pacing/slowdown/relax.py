@@ -171,7 +171,7 @@ class _Relaxation:
         next_two += before * after
         main = main + self._attraction
         blocks = tuple(
-            np.einsum("ifr,f,ifs,i->irs", z[: knots - k], w, z[k:], factor)[1 : knots - 1 - k]
+            _reduced(z[: knots - k], factor[:, None] * w, z[k:])[1 : knots - 1 - k]
             for k, factor in enumerate((main, next_one, next_two))
         )
         bent = before[:, None] * self._q[:-2] + here[:, None] * self._q[1:-1] + after[:, None] * self._q[2:]
@@ -216,8 +216,8 @@ class _Relaxation:
             diagonal = diagonal.copy()
             diagonal[:-1] += price
             diagonal[1:] += price
-            beside = beside - np.einsum("ifr,if,ifs->irs", z[1:-2], price[1:-1], z[2:-1])
-        main = main + np.einsum("ifr,if,ifs->irs", z[1:-1], diagonal[1:-1], z[1:-1])
+            beside = beside - _reduced(z[1:-2], price[1:-1], z[2:-1])
+        main = main + _reduced(z[1:-1], diagonal[1:-1], z[1:-1])
         near = self._near
         if near is not None and np.any(lacking):
             price = self._near_price * lacking
@@ -225,6 +225,11 @@ class _Relaxation:
             np.add.at(main, near.knots - 1, np.einsum("m,mr,ms->mrs", price, rows, rows))
             np.add.at(slope, near.knots, (price * near.room)[:, None] * near.rates)
         return (main, beside, second), gradient + np.einsum("ifr,if->ir", z, slope)[1:-1]
+
+
+def _reduced(left: Array, price: Array, right: Array) -> Array:
+    """L' diag(p) R of every knot: (N, f, r), (N, f), (N, f, s) -> (N, r, s)."""
+    return np.asarray((left * price[:, :, None]).transpose(0, 2, 1) @ right)
 
 
 def _second_differences(widths: Array) -> tuple[Array, Array, Array]:

@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 
 _BRAKE_SHARE = 0.9
 _LEAD_BACK = 12.0
+_TOUCHING = 1e-9
 
 
 @dataclass(frozen=True)
@@ -56,6 +57,11 @@ class Room:
         """Whether a step (n,) needs no stretch."""
         lower, upper = np.maximum(self.low, -self.down), np.minimum(self.high, self.up)
         return bool(np.all((lower <= step) & (step <= upper)))
+
+    def is_wide_for(self, step: Array) -> bool:
+        """Whether a step (n,) needs no stretch, and touches no bound either."""
+        lower, upper = np.maximum(self.low, -self.down), np.minimum(self.high, self.up)
+        return bool(np.all((lower + _TOUCHING < step) & (step < upper - _TOUCHING)))
 
     def unstretched(self) -> StepBounds:
         """All bounds as they are."""
