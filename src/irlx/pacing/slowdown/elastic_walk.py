@@ -71,56 +71,75 @@ def elastic_walk(
     positions (N + 1, n) of the knots; a joint outside them comes back by `reserve` / 12 an interval.
     `coarse`: postures only as near to the best ones as a dry run needs.
     """
-    solver = (RoughTickSolver if coarse else TickSolver)(model.kinematics, ProxQpSolver())
-    settled = _COARSELY_SETTLED if coarse else _SETTLED
+    steps = _Steps(model, reserve, coarse)
     targets = model.targets(grid.poses)
     q = np.empty((grid.intervals + 1, start.size))
     stretch = np.zeros(grid.intervals)
     q[0] = start
-    elapsed, held = 0.0, False
-    active: NDArray[np.int8] | None = None
+    elapsed = 0.0
     for i in range(grid.intervals):
-        target = targets[i + 1]
         room = Room.at(model, q[i], (bounds[0][i + 1], bounds[1][i + 1]), reserve, float(grid.times[i]))
         criterion = criterion_of(float(grid.s[i + 1]), float(grid.s[i + 1] - grid.s[i])).begun(q[i])
         keeping = _kept_clear(model, q[i], room.duration, elapsed, reserve)
-        problem = TickProblem(target, q[i], room.none(), criterion, model.free, keeping)
-        continued = _continued(grid.s, q, i)
-        if isinstance(solver, RoughTickSolver):
-            inside = solver.at_once(problem._replace(bounds=room.unstretched()), continued)
-            if isinstance(inside, TickSolution):
-                q[i + 1] = rounded_inside(inside.q, model.limits)
-                elapsed += room.duration
-                continue
-        begin = continued
-        if not held:
-            easy = solver.solve(problem, thorough=False)
-            if easy.solved and room.holds(easy.q - q[i]):
-                q[i + 1] = rounded_inside(easy.q, model.limits)
-                elapsed += room.duration
-                continue
-            if i == 0:
-                begin = easy.q - q[i] if easy.solved else np.zeros(start.size)
-        elastic = _Stretch(model, solver, problem, room, settled, active)
-        found = elastic.solve(begin)
-        if found is None:
-            found = elastic.solve(np.zeros(start.size))
-        if found is None and keeping is not None:
-            # How fast the path itself leads near something is for the clock: the margins are left.
-            problem = problem._replace(
-                clearance=_kept_clear(model, q[i], room.duration, elapsed, reserve, False)
-            )
-            found = _Stretch(model, solver, problem, room, settled).solve(np.zeros(start.size))
-        if found is None:
-            last = solver.solve(problem._replace(bounds=room.positions()))
-            if not last.solved:
-                return Passage(q[: i + 1], stretch[:i], (i, last), elapsed + room.duration)
-            found = last.q - q[i], room.stretch_of(last.q - q[i])
-        held, active = not room.is_wide_for(found[0]), elastic.active
+        problem = TickProblem(targets[i + 1], q[i], room.none(), criterion, model.free, keeping)
+        found = steps.step(problem, room, _continued(grid.s, q, i), elapsed)
+        if isinstance(found, TickSolution):
+            return Passage(q[: i + 1], stretch[:i], (i, found), elapsed + room.duration)
         q[i + 1] = rounded_inside(q[i] + found[0], model.limits)
         stretch[i] = found[1]
         elapsed += room.duration * (1.0 + found[1])
     return Passage(q, stretch)
+
+
+class _Steps:
+    """Steps from knot to knot; what held joints in the one before tells how the next one is sought."""
+
+    def __init__(self, model: Model, reserve: float, coarse: bool) -> None:
+        self._model, self._reserve = model, reserve
+        self._solver = (RoughTickSolver if coarse else TickSolver)(model.kinematics, ProxQpSolver())
+        self._settled = _COARSELY_SETTLED if coarse else _SETTLED
+        self._held = False
+        self._active: NDArray[np.int8] | None = None
+
+    def step(
+        self, problem: TickProblem, room: Room, continued: Array, elapsed: float
+    ) -> tuple[Array, float] | TickSolution:
+        """Step (n,) of an interval `elapsed` s after the begin, and its stretch; else how it ended.
+
+        `continued` (n,) is where the postures before lead to.
+        """
+        easy = self._easy(problem, room, continued)
+        if easy is not None:
+            return easy, 0.0
+        elastic = _Stretch(self._model, self._solver, problem, room, self._settled, self._active)
+        found = elastic.solve(continued)
+        if found is None:
+            found = elastic.solve(np.zeros(problem.q.size))
+        if found is None and problem.clearance is not None:
+            # How fast the path itself leads near something is for the clock: the margins are left.
+            keeping = _kept_clear(self._model, problem.q, room.duration, elapsed, self._reserve, False)
+            problem = problem._replace(clearance=keeping)
+            elastic = _Stretch(self._model, self._solver, problem, room, self._settled)
+            found = elastic.solve(np.zeros(problem.q.size))
+        if found is None:
+            last = self._solver.solve(problem._replace(bounds=room.positions()))
+            if not last.solved:
+                return last
+            found = last.q - problem.q, room.stretch_of(last.q - problem.q)
+        self._held, self._active = not room.is_wide_for(found[0]), elastic.active
+        return found
+
+    def _easy(self, problem: TickProblem, room: Room, continued: Array) -> Array | None:
+        """A step that needs no stretch, where one is likely."""
+        if isinstance(self._solver, RoughTickSolver):
+            inside = self._solver.at_once(problem._replace(bounds=room.unstretched()), continued)
+            if isinstance(inside, TickSolution):
+                return inside.q - problem.q
+        if self._held:
+            return None
+        easy = self._solver.solve(problem, continued, thorough=False)
+        step = easy.q - problem.q
+        return step if easy.solved and room.holds(step) else None
 
 
 def _continued(s: Array, q: Array, last: int) -> Array:

@@ -170,7 +170,7 @@ class _Relaxation:
         next_one[1:] += here * after
         next_two += before * after
         main = main + self._attraction
-        blocks = tuple(
+        one, first, second = (
             _reduced(z[: knots - k], factor[:, None] * w, z[k:])[1 : knots - 1 - k]
             for k, factor in enumerate((main, next_one, next_two))
         )
@@ -179,7 +179,7 @@ class _Relaxation:
         pull[:-2] += before[:, None] * bent
         pull[1:-1] += here[:, None] * bent
         pull[2:] += after[:, None] * bent
-        return blocks, np.einsum("ifr,f,if->ir", z, w, pull)[1:-1]
+        return (one, first, second), np.einsum("ifr,f,if->ir", z, w, pull)[1:-1]
 
     def _hinges(self, change: Array) -> tuple[Sides, Sides, Sides]:
         """Sides on which steps pass their speed (N, f) and positions their bounds (N + 1, f): 1, 0, -1.
