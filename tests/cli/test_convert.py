@@ -285,7 +285,14 @@ def test_help_shows_an_example_and_every_target(capsys) -> None:
         main(["convert", "--help"])
     assert caught.value.code == 0
     shown = " ".join(capsys.readouterr().out.split())
-    for words in ("examples:", "irlx convert weld.irdata -o weld.script", *_TARGETS, *OWN, ".csv", ".mod"):
+    for words in (
+        "examples:",
+        "irlx convert programs/koch/square.irdata -o square.src",
+        *_TARGETS,
+        *OWN,
+        ".csv",
+        ".mod",
+    ):
         assert words in shown
 
 
