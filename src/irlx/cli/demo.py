@@ -38,7 +38,7 @@ def add_parser(commands: Any) -> None:
     """Add the command to the command line."""
     parser = commands.add_parser(
         "demo",
-        help="begin here: write a commented program, run it, verify it, make a page that replays it",
+        help="begin here: write a program, run, verify and replay it",
         description="Write a commented program and its cell into a folder, run it, verify its stream, make a "
         "page that replays it, and say what to try next.",
         epilog=_EXAMPLE,
