@@ -11,7 +11,7 @@ from typing import IO, Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.blocks import Block
+from irlx.blocks import Block, Origin
 from irlx.diagnostics import Diagnostic, IrlxError, report
 from irlx.interpreter.channels.pieces import InputGiven
 from irlx.job import CellGiven, InputsGiven, Job, PathLike, prepare
@@ -157,7 +157,7 @@ class _Recording(Protocol[Result_co]):
     @property
     def duration(self) -> float: ...
     def add(self, executed: Executed) -> None: ...
-    def say(self, text: str) -> None: ...
+    def say(self, text: str, origin: Origin | None = None) -> None: ...
     def finish(self, complete: bool, diagnostics: tuple[Diagnostic, ...]) -> Result_co: ...
 
 

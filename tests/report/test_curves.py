@@ -157,6 +157,7 @@ def test_clearance_of_a_ball_by_hand():
     assert [found.pairs[number] for number in set(found.pair[on].tolist())] == [("hand", "rock")]
     assert found.smallest.distance == pytest.approx(0.15, abs=1e-9)
     assert found.margin.tolist() == [0.05]
+    assert np.flatnonzero(found.watched).tolist() == list(range(3, 10))
 
 
 def test_nothing_to_keep_clear_of_is_no_curve():

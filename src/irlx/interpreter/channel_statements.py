@@ -180,10 +180,12 @@ def _add_write(statements: Statements, node: tree.Call) -> None:
     for value in values:
         pieces.append(_piece(expressions, value, next(rest), rest))
 
+    origin = origin_of(source, node)
+
     def run(frame: Frame) -> None:
         target = channel(frame)
         text = "".join([piece(frame) for piece in pieces]) + end
-        at(node, source, lambda: channels.write(target, text))
+        at(node, source, lambda: channels.write(target, text, origin))
 
     statements.run(node, run)
 

@@ -47,7 +47,9 @@ def clearances_over(
             least[which], nearest[which] = found[nearer], number
             room[which] = found[nearer] - pair.margin
     names = tuple((pair.link, pair.other) for pair, _, _ in watched)
-    return Clearances(nearest, least, names, np.array([pair.margin for pair, _, _ in watched]))
+    margins = np.array([pair.margin for pair, _, _ in watched])
+    kept_clear = np.any([rows_in(spans, rows) for _, _, spans in watched], axis=0)
+    return Clearances(nearest, least, names, margins, kept_clear)
 
 
 _Watched = tuple[Pair, float, tuple[tuple[int, int], ...]]

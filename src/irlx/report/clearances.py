@@ -30,13 +30,15 @@ class Clearances:
     """What came nearest in each of N samples: index `pair` (N,) into `pairs`, and its `distance` (N,) m.
 
     Pairs are names of a link and of an obstacle or another link, with the `margin` (K,) m kept between
-    them. -1 and an infinite distance where nothing was kept clear or all was beyond its influence.
+    them. -1 and an infinite distance where nothing was kept clear or all was beyond its influence;
+    `watched` (N,) tells where anything was kept clear.
     """
 
     pair: NDArray[np.int64]
     distance: Array
     pairs: tuple[tuple[str, str], ...]
     margin: Array
+    watched: NDArray[np.bool_]
 
     def __repr__(self) -> str:
         near = self.smallest
@@ -60,7 +62,9 @@ def clearances(parts: Iterable[tuple[int, NearestRows | None]]) -> Clearances:
     numbers: dict[tuple[str, str, float], int] = {}
     pair: list[NDArray[np.int64]] = [np.zeros(0, dtype=np.int64)]
     distance: list[Array] = [np.zeros(0)]
+    watched: list[NDArray[np.bool_]] = [np.zeros(0, dtype=np.bool_)]
     for count, rows in parts:
+        watched.append(np.full(count, rows is not None))
         if rows is None:
             pair.append(np.full(count, FAR, dtype=np.int64))
             distance.append(np.full(count, np.inf))
@@ -72,4 +76,5 @@ def clearances(parts: Iterable[tuple[int, NearestRows | None]]) -> Clearances:
         distance.append(rows.distance)
     pairs = tuple((link, other) for link, other, _ in numbers)
     margin = np.array([margin for *_, margin in numbers])
-    return Clearances(np.concatenate(pair), np.concatenate(distance), pairs, margin)
+    columns = np.concatenate(pair), np.concatenate(distance)
+    return Clearances(*columns, pairs, margin, np.concatenate(watched))

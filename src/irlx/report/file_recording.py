@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from irlx.blocks import Origin
 from irlx.diagnostics import Diagnostic
 from irlx.report.figures import Figures
 from irlx.report.outcome import Outcome
@@ -58,10 +59,10 @@ class FileRecording(Recorder):
             self.abort()
             raise
 
-    def say(self, text: str) -> None:
-        """Take what the program writes for the terminal."""
+    def say(self, text: str, origin: Origin | None = None) -> None:
+        """Take what the program writes for the terminal, by the statement at `origin`."""
         if self._page is not None:
-            self._page.say(text)
+            self._page.say(text, origin)
 
     def finish(self, complete: bool, diagnostics: tuple[Diagnostic, ...]) -> Outcome:
         """Let the files appear; of a run in which nothing has moved, none."""

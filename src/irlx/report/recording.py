@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from irlx.blocks import Origin
 from irlx.diagnostics import Diagnostic
 from irlx.report.clearances import clearances
 from irlx.report.figures import Figures
+from irlx.report.message import Message, message
 from irlx.report.recorder import Recorder
 from irlx.report.replay.source import ReplaySource
 from irlx.report.returns import Seen
@@ -34,12 +36,12 @@ class Recording(Recorder):
         """Begin at posture `start` (n,), the tool at `rotation` (3, 3), `position` (3,) m, in the world."""
         self._figures, self._kept = Figures(header, seen), _Kept()
         self._source = source
-        self._messages: list[tuple[int, str]] = []
+        self._messages: list[Message] = []
         super().__init__(header, start, rotation, position, (self._figures, self._kept))
 
-    def say(self, text: str) -> None:
-        """Take what the program writes for the terminal."""
-        self._messages.append((max(self.rows - 1, 0), text))
+    def say(self, text: str, origin: Origin | None = None) -> None:
+        """Take what the program writes for the terminal, by the statement at `origin`."""
+        self._messages.append(message(self.rows, text, origin, self.header.program_name))
 
     def finish(self, complete: bool, diagnostics: tuple[Diagnostic, ...]) -> Run:
         """The run as it stands."""

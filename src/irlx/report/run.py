@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from irlx.diagnostics import Diagnostic, IrlxError
 from irlx.report.clearances import Clearances, clearances
+from irlx.report.message import Message
 from irlx.report.outcome import Outcome
 from irlx.report.replay.names import is_page
 from irlx.report.replay.source import ReplaySource
@@ -31,14 +32,14 @@ class Run(Outcome):
     rates being backward differences of the emitted q, from rest before tick 0; `tool` (N, 7) x y z in
     m and unit quaternion x y z w of the tool frame in the world; `block` (N,) id of the move.
     `clearances` is what came nearest in each sample; `limits` are those of the joints, each with the tick
-    from which on it is in force; `messages` what was written to STANDARD_OUT, each with its tick;
+    from which on it is in force; `messages` what was written to STANDARD_OUT, each with its tick and line;
     `source` what a replay page shows beside all this. See `Outcome` for what else there is.
     """
 
     stream: JointStream
     clearances: Clearances = field(default_factory=lambda: clearances(()))
     limits: tuple[tuple[int, JointLimits], ...] = ()
-    messages: tuple[tuple[int, str], ...] = ()
+    messages: tuple[Message, ...] = ()
     source: ReplaySource | None = field(default=None, repr=False)
 
     @property

@@ -30,6 +30,8 @@ model = "arm7"
 position = [170, 170, 170, 170, 170, 170, 170]
 speed = [60, 60, 60, 60, 60, 60, 60]
 acceleration = [300, 300, 300, 300, 300, 300, 300]
+[robot.self_collision]
+active = false
 [motion]
 tick_ms = 8
 speed = 300
@@ -59,7 +61,7 @@ BEGIN
   MOVE_INC LIN (0, -60, 0);
   JOINTSPEEDLIMITEND;
   WAIT 0.1 SEC;
-  WRITELN('we end');
+  OBSTACLEEND post; WRITELN('we end');
   MOVE_INC LIN (30, 0, 20);
 ENDPROGRAM;
 """
@@ -191,6 +193,17 @@ def test_clearance_is_the_nearest_on_the_way(made):
     assert frames["clearance"][0] is None
 
 
+def test_watched_while_the_obstacle_is_on(made):
+    _, run, data = made
+    frames = data["frames"]
+    end = data["blocks"][-2]["tick"]
+    assert data["blocks"][-2]["text"].startswith("OBSTACLE")
+    assert 0 < end < len(run.t) - 1
+    before = [-1, *frames["tick"]]
+    assert frames["watched"] == [last < end for last in before[:-1]]
+    np.testing.assert_array_equal(run.clearances.watched[1:], np.arange(1, len(run.t)) <= end)
+
+
 def test_limits_are_those_that_the_verifier_knows(made):
     _, run, data = made
     starts = [limits["tick"] for limits in data["limits"]]
@@ -208,7 +221,7 @@ def test_events(made):
     _, run, data = made
     events = data["events"]
     by_kind = {kind: [e for e in events if e["kind"] == kind] for kind in {e["kind"] for e in events}}
-    assert [e["label"] for e in by_kind["message"]] == ["we begin", "we end"]
+    assert [(e["label"], e["line"]) for e in by_kind["message"]] == [("we begin", 7), ("we end", 16)]
     assert [e["label"] for e in by_kind["signal"]] == ["OUT_1 = TRUE"]
     (wait,) = by_kind["wait"]
     assert (wait["label"], wait["line"]) == ("WAIT 0.1 s", 15)

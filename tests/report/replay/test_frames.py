@@ -23,6 +23,7 @@ def rows_of(count, seed=0):
         room,
         room + 0.1,
         np.where(far, -1, rng.integers(0, 4, count)),
+        rng.random(count) < 0.3,
     )
 
 
@@ -41,7 +42,8 @@ def expected(rows, every):
         near = before + 1 + int(np.argmin(rows.room[since]))
         state = tick, rows.line[tick], rows.q[tick], rows.tool[tick]
         fastest = rows.tool_speed[since].max(), rows.turn_speed[since].max()
-        found.append((*state, largest, *fastest, rows.room[near], rows.distance[near], rows.pair[near]))
+        nearest = rows.room[near], rows.distance[near], rows.pair[near]
+        found.append((*state, largest, *fastest, *nearest, any(rows.watched[since])))
         before = tick
     return Columns(*(np.array(column) for column in zip(*found, strict=True)))
 

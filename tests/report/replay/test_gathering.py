@@ -113,6 +113,19 @@ def test_inputs_messages_and_the_end(gathering):
     assert (stop["kind"], stop["first"], stop["label"]) == ("stop", 4, "ended by IRL002")
 
 
+def test_messages_have_the_lines_of_their_statements(gathering):
+    def at(line, file="p.irl"):
+        return Origin(file, 0, 1, line)
+
+    gathering.say("x = ", at(4))
+    gathering.say("3\n", at(5))
+    gathering.say("loop\n", at(7))
+    gathering.say("loop\n", at(7))
+    gathering.say("of a module\n", at(2, "m.irl"))
+    told = [(event["line"], event["text"]) for event in events_of(gathering)]
+    assert told == [(4, "x = 3"), (7, "loop\nloop"), (None, "of a module")]
+
+
 def test_a_page_lists_the_first_blocks(gathering, monkeypatch):
     monkeypatch.setattr(gathering_module, "MOST_LISTED", 3)
     monkeypatch.setattr(gathering_module, "_RECENT", 2)

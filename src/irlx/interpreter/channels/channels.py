@@ -6,6 +6,7 @@ from collections.abc import Callable, Hashable
 from io import StringIO
 from typing import Any, Literal
 
+from irlx.blocks import Origin
 from irlx.diagnostics import Diagnostic, Place, Related, report
 from irlx.interpreter.channels.fault import STANDARD_IN, STANDARD_OUT, ChannelFault, cannot
 from irlx.interpreter.channels.files import Files, Mode
@@ -20,6 +21,9 @@ MOST_WRITTEN = 1_000_000_000
 """Bytes that a run may write to files."""
 MOST_SHOWN = 100_000_000
 """Characters that a run may write to STANDARD_OUT; they are kept for `Run.output`."""
+
+Listener = Callable[[str, Origin | None], None]
+"""Called with each text for STANDARD_OUT and the statement that writes it, None where that is not known."""
 
 Told = Callable[[str | None, str], None]
 """Called with the name of the file, None for STANDARD_OUT, and each text that is written."""
@@ -37,7 +41,7 @@ class Channels:
         self.files = files or MemoryFiles()
         self._input = TextReader(STANDARD_IN, pull or once(""))
         self._told = told
-        self._listener: Callable[[str], None] | None = None
+        self._listener: Listener | None = None
         self._open: list[OpenFile] = []
         self._shown = StringIO()
         self._show_left, self._write_left = MOST_SHOWN, MOST_WRITTEN
@@ -48,7 +52,7 @@ class Channels:
         """What was written to STANDARD_OUT so far."""
         return self._shown.getvalue()
 
-    def heard_by(self, listener: Callable[[str], None]) -> None:
+    def heard_by(self, listener: Listener) -> None:
         """Have each text for STANDARD_OUT told to somebody else as well."""
         self._listener = listener
 
@@ -88,13 +92,13 @@ class Channels:
             raise _other_mode(file, "read", "READ")
         return file.reader
 
-    def write(self, file: OpenFile | None, text: str) -> None:
-        """Write to a file, or without one to the standard channel.
+    def write(self, file: OpenFile | None, text: str, origin: Origin | None = None) -> None:
+        """Write to a file, or without one to the standard channel; `origin` is the statement that does.
 
         Raises ChannelFault: IRL545 for a file that is read, IRL548, IRL553 for too much.
         """
         if file is None:
-            self._show(text)
+            self._show(text, origin)
             return
         if file.sink is None:
             raise _other_mode(file, "written", "WRITE' or 'APPEND")
@@ -117,13 +121,13 @@ class Channels:
                 warnings.append(report(fault.code, file.place, **fault.data))
         return warnings
 
-    def _show(self, text: str) -> None:
+    def _show(self, text: str, origin: Origin | None) -> None:
         self._show_left -= len(text)
         if self._show_left < 0:
             raise ChannelFault("IRL553", what=STANDARD_OUT, most=f"{MOST_SHOWN:,} characters")
         self._shown.write(text)
         if self._listener is not None:
-            self._listener(text)
+            self._listener(text, origin)
         if self._told is not None:
             try:
                 self._told(None, text)

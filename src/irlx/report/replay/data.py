@@ -113,7 +113,13 @@ def _frames(columns: Columns) -> Plain:
         "turn_speed": _rounded(columns.turn_speed, _COARSE),
         "clearance": _rounded(columns.distance, _COARSE),
         "nearest": columns.pair,
+        "watched": _watched(columns),
     }
+
+
+def _watched(columns: Columns) -> NDArray[np.bool_]:
+    """Where anything is kept clear; of the start, in which nobody looks, what holds in the next frame."""
+    return np.append(columns.watched[1:2], columns.watched[1:]) if len(columns.tick) > 1 else columns.watched
 
 
 def _rounded(values: NDArray[np.float64], decimals: int) -> NDArray[np.float64]:

@@ -13,6 +13,7 @@ from irlx.blocks import PauseBlock, WaitBlock
 from irlx.blocks.text import block_text
 from irlx.diagnostics import Diagnostic
 from irlx.report.events import LimitActive, Slowed
+from irlx.report.message import Message
 from irlx.report.replay.gathering import MOST_SHOWN, Gathered
 from irlx.report.signals import signals_of
 from irlx.report.terminal import PER, joint_value
@@ -33,7 +34,7 @@ def replay_events(
     numbers = {name: number for number, name in enumerate(header.joint_names)}
     events = [_told(event, units, numbers, found.limits) for event in told]
     events += [*_nearest(found), *_signals(header, found), *_waits(found)]
-    events += [_message(tick, text) for tick, text in found.messages]
+    events += [_message(message) for message in found.messages]
     last = max(found.rows - 1, 0)
     events += [_event("stop", last, last, f"ended by {error.code}", str(error)) for error in errors]
     return sorted(events, key=lambda event: (event["first"], event["last"]))
@@ -140,8 +141,8 @@ def _waits(found: Gathered) -> Iterator[Event]:
         yield open_one
 
 
-def _message(tick: int, text: str) -> Event:
-    shown = text.strip()
+def _message(message: Message) -> Event:
+    shown, tick = message.text.strip(), message.tick
     if len(shown) > MOST_SHOWN:
         shown = f"{shown[:MOST_SHOWN]} …"
-    return _event("message", tick, tick, next(iter(shown.splitlines()), ""), shown)
+    return _event("message", tick, tick, next(iter(shown.splitlines()), ""), shown, message.line)

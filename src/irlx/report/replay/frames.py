@@ -22,7 +22,7 @@ class Columns(NamedTuple):
     State at the `tick` (M,): `line` of the program (M,), joint values `q` (M, n), pose of the `tool` (M, 7).
     Largest in size since the row before: `speed` of the joints (M, n), `tool_speed` (M,) m/s, `turn_speed`
     (M,) rad/s. The place with the least `room` (M,) m above its margin: its `distance` (M,) m and the number
-    of its `pair` (M,); infinite and -1 where everything is far.
+    of its `pair` (M,); infinite and -1 where everything is far. `watched` (M,): anything was kept clear.
     """
 
     tick: Integers
@@ -35,6 +35,7 @@ class Columns(NamedTuple):
     room: Array
     distance: Array
     pair: Integers
+    watched: NDArray[np.bool_]
 
 
 class Frames:
@@ -105,6 +106,7 @@ def _binned(rows: Columns, every: int) -> Columns:
         rows.room[least],
         rows.distance[least],
         rows.pair[least],
+        np.logical_or.reduceat(rows.watched, first),
     )
 
 

@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.blocks import PauseBlock, ToolBlock, WaitBlock
+from irlx.blocks import Origin, PauseBlock, ToolBlock, WaitBlock
 from irlx.pacing.nearest_rows import FAR, NearestRows
+from irlx.report.message import Message, message
 from irlx.report.replay.frames import MOST_FRAMES, Columns, Frames
 from irlx.report.segment import Segment
 from irlx.robot.limits import JointLimits, alike
@@ -30,7 +31,7 @@ class Gathered:
 
     Its `rows`; `records` of its blocks; `limits` and the tick from which on each is in force, and `tools`,
     the blocks that set them; `waits` and the last tick of each; `pairs`, of which frames tell the nearest by
-    its number: link, obstacle or other link, margin (m); `messages` of the program, each with its tick.
+    its number: link, obstacle or other link, margin (m); `messages` of the program.
     Of the `blocks` so far, and of messages, at most `MOST_LISTED` are kept.
     """
 
@@ -42,7 +43,7 @@ class Gathered:
     tools: list[tuple[int, ToolBlock]] = field(default_factory=list)
     waits: list[tuple[BlockRecord, int]] = field(default_factory=list)
     pairs: dict[tuple[str, str, float], int] = field(default_factory=dict)
-    messages: list[tuple[int, str]] = field(default_factory=list)
+    messages: list[Message] = field(default_factory=list)
 
 
 class Gathering:
@@ -72,15 +73,23 @@ class Gathering:
             found.waits[-1] = (found.waits[-1][0], segment.first_tick + rows - 1)
         self._before = segment.q[-1:].copy(), segment.tool[-1:].copy()
 
-    def say(self, text: str) -> None:
-        """Take what the program writes for the terminal, at this moment."""
-        tick = max(self.found.rows - 1, 0)
+    def say(self, text: str, origin: Origin | None = None) -> None:
+        """Take what the program writes for the terminal, at this moment, by the statement at `origin`."""
+        self.hear(message(self.found.rows, text, origin, self._header.program_name))
+
+    def hear(self, new: Message) -> None:
+        """Take a message; what one statement writes at one tick, and what ends a line begun, is one."""
         messages = self.found.messages
-        if messages and messages[-1][0] == tick:
-            if len(messages[-1][1]) < MOST_SHOWN:
-                messages[-1] = (tick, messages[-1][1] + text)
+        last = messages[-1] if messages else None
+        if (
+            last is not None
+            and last.tick == new.tick
+            and (last.line == new.line or not last.text.endswith("\n"))
+        ):
+            if len(last.text) < MOST_SHOWN:
+                messages[-1] = last._replace(text=last.text + new.text)
         elif len(messages) < MOST_LISTED:
-            messages.append((tick, text))
+            messages.append(new)
 
     def _take_record(self, record: BlockRecord) -> None:
         block, found = record.block, self.found
@@ -114,6 +123,7 @@ class Gathering:
             room,
             distance,
             pair,
+            np.full(rows, segment.nearest is not None),
         )
 
     def _lines_of(self, block: Integers) -> Integers:

@@ -7,6 +7,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from irlx.pacing.nearest_rows import NearestRows
 from irlx.report.replay.data import Replay
@@ -24,7 +25,8 @@ def replay_of(run: Run, source: ReplaySource, most: int = MOST_FRAMES) -> Replay
     gathering = Gathering(run.header, most)
     for segment in _segments(run):
         gathering.take(segment)
-    gathering.found.messages.extend(run.messages)
+    for message in run.messages:
+        gathering.hear(message)
     return Replay(run.header, gathering.found, source, run.summary, run.events, run.diagnostics)
 
 
@@ -34,7 +36,8 @@ def _segments(run: Run) -> Iterator[Segment]:
     rows = len(stream.ticks)
     starts = {tick: limits for tick, limits in run.limits if tick < rows}
     # A block recorded at tick k begins behind row k.
-    cuts = sorted({0, rows, *starts, *(record.tick + 1 for record in stream.records if record.tick < rows)})
+    begun = (record.tick + 1 for record in stream.records if record.tick < rows)
+    cuts = sorted({0, rows, *starts, *begun, *_changes(run.clearances.watched)})
     waiting = list(reversed(stream.records))
     limits = run.header.limits
     for first, last in pairwise(cuts):
@@ -46,11 +49,16 @@ def _segments(run: Run) -> Iterator[Segment]:
         yield _part(run, 0, 0)._replace(record=waiting.pop())
 
 
+def _changes(watched: NDArray[np.bool_]) -> list[int]:
+    """Rows of N that are other than the one before."""
+    return [int(row) + 1 for row in np.flatnonzero(watched[1:] != watched[:-1])]
+
+
 def _part(run: Run, first: int, last: int) -> Segment:
     stream, near = run.stream, run.clearances
     part = slice(first, last)
     nearest = None
-    if near.pairs:
+    if last > first and near.watched.size and near.watched[first]:
         nearest = NearestRows(near.pair[part], near.distance[part], near.pairs, near.margin)
     still = np.zeros((last - first, run.header.joints), dtype=np.int8)
     own = stream.q[part], stream.block[part], stream.tool[part]

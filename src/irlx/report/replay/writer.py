@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from irlx.blocks import Origin
 from irlx.diagnostics import Diagnostic
 from irlx.report.outcome import Outcome
 from irlx.report.replay.gathering import Gathering
@@ -29,9 +30,9 @@ class PageWriter:
         """Take the next segment."""
         self._gathering.take(segment)
 
-    def say(self, text: str) -> None:
-        """Take what the program writes for the terminal."""
-        self._gathering.say(text)
+    def say(self, text: str, origin: Origin | None = None) -> None:
+        """Take what the program writes for the terminal, by the statement at `origin`."""
+        self._gathering.say(text, origin)
 
     def close(self, outcome: Outcome, name: Path | None = None) -> tuple[Path, tuple[Diagnostic, ...]]:
         """Let the page appear, under another `name` where one is given: where, and warnings (IRL721).
