@@ -127,8 +127,21 @@ function api(run, player, kinematics, ready) {
 /** Play, unless the reader wants stillness or the address names a time, as in #t=3.5. */
 function begin(player, small) {
   const asked = location.hash.match(/^#t=([\d.]+)$/);
-  if (asked) player.seekTime(Number(asked[1]));
-  else if (!still && !small) player.play();
+  if (asked) {
+    player.seekTime(Number(asked[1]));
+    forgetTime(player);
+  } else if (!still && !small) player.play();
+}
+
+/** Take the time out of the address as soon as another one is shown. */
+function forgetTime(player) {
+  const { frame } = player;
+  let told = true;
+  player.onChange(() => {
+    if (!told || player.frame === frame) return;
+    told = false;
+    history.replaceState(history.state, '', location.pathname + location.search);
+  });
 }
 
 try {

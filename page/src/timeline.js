@@ -2,11 +2,13 @@
 
 import { kindOf, kindsOf } from './event-kinds.js';
 import { element } from './element.js';
+import { sparse } from './sparse.js';
 import { seconds } from './units.js';
 
 const EDGE = 8; // px that the middle of the slider's thumb keeps from its ends
 const MOVES = 15; // px of height of the moves, ..
 const LANE = 5; // .. and of a kind of events
+const SHORT = 6; // px below which moves are not told apart
 const NEAR = 4; // px within which the pointer finds an event
 
 export class Timeline {
@@ -46,27 +48,41 @@ export class Timeline {
   }
 
   #drawMoves(context, width) {
-    const { blocks, duration } = this.run;
-    let shade = 0;
     const colours = ['strip-a', 'strip-b', 'muted'].map((name) => this.theme.colour(name));
     context.font = '10px system-ui, sans-serif';
     context.textBaseline = 'middle';
     context.textAlign = 'center';
-    blocks.forEach((block, k) => {
-      const next = blocks[k + 1];
-      // Blocks that only switch something take no time.
-      if (block.from >= (next ? next.from : duration)) return;
-      const [from, to] = [this.#x(block.from, width), this.#x(next ? next.from : duration, width)];
-      shade = 1 - shade;
-      context.fillStyle = colours[shade];
+    this.#pieces(width).forEach(({ from, to, blocks }, k) => {
+      context.fillStyle = colours[1 - (k % 2)];
       context.beginPath();
       context.roundRect(from + 0.5, 0, Math.max(to - from - 1, 0.5), MOVES, 3);
       context.fill();
-      const label = block.line ? String(block.line) : String(block.id);
+      const [{ line, id }] = blocks;
+      const label = blocks.length > 1 ? `${blocks.length} moves` : String(line || id);
       if (to - from < context.measureText(label).width + 6) return;
       context.fillStyle = colours[2];
       context.fillText(label, (from + to) / 2, MOVES / 2 + 0.5);
     });
+  }
+
+  /** What the strip is divided into, [{from, to, blocks}], px: moves, of which those too short to be told apart are one. */
+  #pieces(width) {
+    const { blocks, duration } = this.run;
+    // Blocks that only switch something take no time.
+    const moves = blocks.filter((block, k) => block.from < (blocks[k + 1]?.from ?? duration));
+    const [begins, end] = [moves.map((block) => this.#x(block.from, width)), this.#x(duration, width)];
+    const pieces = sparse([...begins, end], SHORT)
+      .filter((from) => from < end)
+      .map((from) => ({ from, blocks: [] }));
+    let piece = -1;
+    moves.forEach((block, k) => {
+      if (begins[k] === pieces[piece + 1]?.from) piece += 1;
+      pieces[piece].blocks.push(block);
+    });
+    pieces.forEach((it, k) => {
+      it.to = pieces[k + 1]?.from ?? end;
+    });
+    return pieces;
   }
 
   #x(time, width) {

@@ -123,8 +123,8 @@ export class CurvesPanel {
   #resize() {
     const { clientWidth: width, clientHeight: height } = this.list;
     const shown = this.plots.filter((plot) => !plot.root.hidden);
-    const head = 24;
-    const share = Math.floor(height / shown.length) - head;
+    const heads = shown.reduce((sum, plot) => sum + plot.head, 0);
+    const share = Math.floor((height - heads) / shown.length);
     const each = this.single ? Math.max(60, share) : Math.min(MOST, Math.max(LEAST, share));
     shown.forEach((plot) => plot.size(width, each));
   }

@@ -2,14 +2,18 @@
 
 import uPlot from 'uplot';
 import { element } from '../element.js';
+import { sparse } from '../sparse.js';
 
 const LEFT = 52;
 const FOCUS = 28; // px within which a curve is told by the pointer
+const MARKS = 6; // px that marks of moves are apart at least
+const BREAK = 4; // px that a break in a curve is wide at least
 
 /**
- * A spec has: id, title, series [{label, unit, scale, colour(), values(), shown(), dash, width, decimals}],
+ * A spec has: id, title, series [{label, unit, scale, colour(), values(), shown(), dash, width, decimals}], of which one
+ * may have breaks(), the frames that are not joined with the one before,
  * second (name of the right scale or null), from0 (whether the y axis begins at 0), range(scale) or null,
- * single() whether the left scale serves all curves now, limits() -> [{scale, colour, steps: [[time, value]..]}], bands [{from, to, colour}],
+ * single() whether the left scale serves all curves now, rows of the heading where more than one, limits() -> [{scale, colour, steps: [[time, value]..]}], bands [{from, to, colour}],
  * marks() -> [{series, first, last}] stretches of curves drawn strong, readout(frame, series) -> text.
  */
 export class Plot {
@@ -20,13 +24,18 @@ export class Plot {
     this.heading = element('span', { class: 'plot-unit' }, spec.unit());
     this.root = element(
       'section',
-      { class: 'plot', 'data-plot': spec.id },
+      { class: spec.rows > 1 ? 'plot two-rows' : 'plot', 'data-plot': spec.id },
       element('h3', {}, element('span', { class: 'plot-title' }, spec.title), this.heading, this.value),
       this.host,
     );
     this.focused = null;
     this.frame = 0;
     this.time = 0;
+  }
+
+  /** Height of the heading, px. */
+  get head() {
+    return this.heading.parentElement.offsetHeight;
   }
 
   /** Draw at a size in px; the first call makes the plot. */
@@ -124,6 +133,7 @@ export class Plot {
       dash: series.dash,
       points: { show: (u) => u.data[0].length < 2 },
       spanGaps: false,
+      gaps: (u, _, first, last, gaps) => (series.breaks ? withBreaks(u, series.breaks(), first, last, gaps) : gaps),
       pxAlign: 0,
     };
   }
@@ -131,7 +141,7 @@ export class Plot {
   #range(scale, low, high) {
     const given = this.spec.range?.(scale);
     if (given) return given;
-    let [least, most] = [low ?? 0, high ?? 1];
+    let [least, most] = this.#extent(scale, low, high);
     for (const limit of this.spec.limits()) {
       if (limit.scale !== scale) continue;
       for (const [, value] of limit.steps) {
@@ -145,9 +155,27 @@ export class Plot {
     return [least - room, most + room];
   }
 
+  /** Least and largest value that a scale has to show: where nothing of its curves is in sight, those of the whole run. */
+  #extent(scale, low, high) {
+    if (low !== null && high !== null) return [low, high];
+    let [least, most] = [Infinity, -Infinity];
+    for (const series of this.spec.series) {
+      if (series.scale !== scale || !series.shown()) continue;
+      for (const value of series.values()) {
+        if (value === null) continue;
+        least = Math.min(least, value);
+        most = Math.max(most, value);
+      }
+    }
+    return least <= most ? [least, most] : [0, 1];
+  }
+
   #drawBelow(u) {
     const { ctx, bbox } = u;
     ctx.save();
+    ctx.beginPath();
+    ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+    ctx.clip();
     for (const band of this.spec.bands) {
       const [from, to] = [band.from, band.to].map((time) => u.valToPos(time, 'x', true));
       ctx.globalAlpha = 0.14;
@@ -158,8 +186,8 @@ export class Plot {
     ctx.strokeStyle = this.theme.colour('plot-block');
     ctx.lineWidth = devicePixelRatio;
     ctx.beginPath();
-    for (const block of this.run.blocks.slice(1)) {
-      const x = Math.round(u.valToPos(block.from, 'x', true));
+    const begins = this.run.blocks.slice(1).map((block) => Math.round(u.valToPos(block.from, 'x', true)));
+    for (const x of sparse(begins, MARKS * devicePixelRatio)) {
       ctx.moveTo(x, bbox.top);
       ctx.lineTo(x, bbox.top + bbox.height);
     }
@@ -278,4 +306,23 @@ export class Plot {
   #tell(frame, series) {
     this.value.textContent = this.spec.readout(frame, series);
   }
+}
+
+/** Gaps of a curve [[from, to]..], px: those where it has no values, and as wide a one as can be seen at each break. */
+function withBreaks(u, breaks, first, last, gaps) {
+  const half = (BREAK * devicePixelRatio) / 2;
+  const own = breaks
+    .filter((frame) => first < frame && frame <= last)
+    .map((frame) => {
+      const [from, to] = [frame - 1, frame].map((index) => u.valToPos(u.data[0][index], 'x', true));
+      const middle = (from + to) / 2;
+      return [Math.min(from, middle - half), Math.max(to, middle + half)];
+    });
+  const joined = [];
+  for (const [from, to] of [...gaps, ...own].sort((a, b) => a[0] - b[0])) {
+    const before = joined[joined.length - 1];
+    if (before && from <= before[1]) before[1] = Math.max(before[1], to);
+    else joined.push([from, to]);
+  }
+  return joined;
 }

@@ -1,6 +1,7 @@
 /** The plots that a run has. */
 
 import { fixed, figure } from '../units.js';
+import { clearanceSpec } from './clearance.js';
 import { curveOf, hasLimits, inPercent, inUnits, limitSteps } from './series.js';
 
 const SLOWEST_TURN = 1e-3; // rad/s: slower turns are rounding
@@ -100,32 +101,6 @@ function pathSpec(run, theme) {
     limits: () => [],
     marks: () => [],
     readout: (frame) => `${figure(tool[frame])} mm/s${turns ? `   ${figure(turn[frame], 3)} °/s` : ''}`,
-  };
-}
-
-function clearanceSpec(run, theme) {
-  const { frames, pairs } = run.data;
-  const margin = (frame) => pairs[frames.nearest[frame]]?.margin ?? 0;
-  // Pairs have margins of their own: how much more room there is does not jump where another pair comes nearest.
-  const room = frames.clearance.map((value, frame) => (value === null ? null : (value - margin(frame)) * 1000));
-  return {
-    id: 'clearance',
-    title: 'Room above the margin',
-    unit: () => 'mm',
-    series: [
-      { label: 'room', scale: 'y', colour: () => theme.colour('nearest'), values: () => room, shown: () => true, width: 1.8 },
-    ],
-    second: false,
-    single: () => true,
-    from0: true,
-    bands: [],
-    limits: () => [],
-    marks: () => [],
-    readout: (frame) => {
-      const pair = pairs[frames.nearest[frame]];
-      if (!pair || room[frame] === null) return 'nothing near';
-      return `${pair.link} – ${pair.other}  ${fixed(room[frame], 1)} mm`;
-    },
   };
 }
 

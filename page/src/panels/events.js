@@ -16,11 +16,8 @@ export class EventsPanel {
     }
     this.rows = run.events.slice(0, MOST).map((event) => this.#row(event));
     const left = run.events.length - this.rows.length;
-    host.append(
-      this.#kinds(),
-      element('ol', { class: 'events' }, ...this.rows),
-      left > 0 ? element('p', { class: 'empty' }, `${left} more are on the timeline.`) : null,
-    );
+    host.append(this.#kinds(), element('ol', { class: 'events' }, ...this.rows));
+    if (left > 0) host.append(element('p', { class: 'empty' }, `${left} more are on the timeline.`));
     player.onChange(() => this.#show(player.frame));
   }
 

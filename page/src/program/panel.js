@@ -1,14 +1,20 @@
-/** The program, its line in execution lit; a press on a line seeks to where it begins. */
+/** The program, the statement in execution lit; a press on a line seeks to where it begins. */
 
 import { element } from '../element.js';
-import { kindOf } from '../event-kinds.js';
+import { KINDS, kindOf } from '../event-kinds.js';
 import { colouredLines } from './colouring.js';
+import { lastLines } from './statements.js';
+
+const DOTS = 3; // beside a number: there is no room for more
+const WEIGHT = ['stop', ...Object.keys(KINDS)]; // kinds, those first that are told where there are too many
 
 export class ProgramPanel {
   constructor({ host, run, player, theme }) {
     Object.assign(this, { host, run, player });
     const { program } = run.data;
     this.firstFrames = firstFrames(run);
+    this.lastLines = new Map();
+    this.lit = [];
     this.rows = program.text === null ? this.#blockRows() : this.#textRows(program, theme);
     this.list = element('ol', { class: 'program', style: `--digits: ${String(this.rows.length).length}` }, ...this.rows);
     host.append(this.list);
@@ -17,16 +23,29 @@ export class ProgramPanel {
 
   /** Scroll to the lit line, as when the panel appears. */
   reveal() {
-    this.lit?.scrollIntoView({ block: 'nearest' });
+    this.lit[0]?.scrollIntoView({ block: 'nearest' });
   }
 
   #textRows(program, theme) {
     const marks = this.#marks();
-    return colouredLines(program.text.replace(/\n$/, ''), program.keywords).map((pieces, index) => {
+    const lines = colouredLines(program.text.replace(/\n$/, ''), program.keywords);
+    this.lastLines = lastLines(lines, [...this.firstFrames.keys()]);
+    const begins = this.#begins();
+    return lines.map((pieces, index) => {
       const line = index + 1;
       const code = element('code', {}, ...pieces.map(([kind, text]) => (kind ? element('span', { class: kind }, text) : text)));
-      return this.#row(line, String(line), code, this.firstFrames.get(line), marks.get(line));
+      const row = this.#row(line, String(line), code, this.firstFrames.get(begins.get(line)), marks.get(line));
+      row.classList.toggle('goes-on', begins.has(line) && begins.get(line) !== line);
+      return row;
     });
+  }
+
+  /** Of each line of a statement that moves the one that it begins on. */
+  #begins() {
+    const found = new Map();
+    for (const begin of [...this.lastLines.keys()].sort((a, b) => a - b))
+      for (let line = begin; line <= this.lastLines.get(begin); line += 1) found.set(line, begin);
+    return found;
   }
 
   #blockRows() {
@@ -36,10 +55,13 @@ export class ProgramPanel {
   }
 
   #row(key, number, code, frame, marks = []) {
-    const dots = marks.map((event) =>
+    const weight = (event) => WEIGHT.indexOf(event.kind);
+    const told = [...marks].sort((a, b) => weight(a) - weight(b)).slice(0, DOTS);
+    const dots = told.map((event) =>
       element('i', { class: 'mark', style: `--mark: var(--${kindOf(event).colour})`, title: event.text || event.label }),
     );
-    const row = element('li', { 'data-line': key }, element('span', { class: 'number' }, number), code, element('span', { class: 'marks' }, ...dots));
+    const beside = element('span', { class: 'number' }, element('span', { class: 'marks' }, ...dots), number);
+    const row = element('li', { 'data-line': key }, beside, code);
     if (frame === undefined) return row;
     row.classList.add('runs');
     row.tabIndex = 0;
@@ -66,20 +88,25 @@ export class ProgramPanel {
   }
 
   #show(frame) {
-    const row = this.#rowAt(frame);
-    if (row === this.lit) return;
-    this.lit?.classList.remove('lit');
-    this.lit?.removeAttribute('aria-current');
-    this.lit = row;
-    if (!row) return;
-    row.classList.add('lit');
-    row.setAttribute('aria-current', 'step');
-    this.#scrollTo(row);
+    const rows = this.#rowsAt(frame);
+    if (rows[0] === this.lit[0]) return;
+    for (const row of this.lit) row.classList.remove('lit');
+    this.lit[0]?.removeAttribute('aria-current');
+    this.lit = rows;
+    if (!rows.length) return;
+    for (const row of rows) row.classList.add('lit');
+    rows[0].setAttribute('aria-current', 'step');
+    this.#scrollTo(rows[0]);
   }
 
-  #rowAt(frame) {
-    if (this.run.data.program.text !== null) return this.rows[this.run.data.frames.line[frame] - 1] ?? null;
-    return this.rows[this.run.blocks.indexOf(this.run.blockAt(frame))] ?? null;
+  /** Rows of the statement in execution. */
+  #rowsAt(frame) {
+    if (this.run.data.program.text !== null) {
+      const line = this.run.data.frames.line[frame];
+      return line ? this.rows.slice(line - 1, this.lastLines.get(line)) : [];
+    }
+    const block = this.run.blocks.indexOf(this.run.blockAt(frame));
+    return block < 0 ? [] : [this.rows[block]];
   }
 
   /** Scroll only this panel, and only where the line is near or beyond its edge. */

@@ -1,12 +1,16 @@
 """A browser for the replay page."""
 
 import base64
+import json
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+
+from irlx.report.replay.page import page_of
+from made_page import made_data
 
 ARGUMENTS = (
     "--no-sandbox",
@@ -120,3 +124,17 @@ def open_page(browser):
         assert shown.complaints == []
 
     return opened
+
+
+@pytest.fixture(scope="session")
+def made(tmp_path_factory):
+    """`made(**changes)`: file of the page made by hand."""
+    folder = tmp_path_factory.mktemp("page")
+
+    def write(**changes):
+        path = folder / f"page_{len(list(folder.iterdir()))}.html"
+        data = made_data(**changes)
+        path.write_bytes(page_of(data["title"], json.dumps(data).encode()))
+        return path
+
+    return write

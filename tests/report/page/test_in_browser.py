@@ -1,29 +1,12 @@
 """The replay page in a browser: what it shows, asks for and answers to."""
 
-import json
-
 import numpy as np
 import pytest
 
-from irlx.report.replay.page import page_of
-from made_page import FRAMES, made_data, tool_poses
+from made_page import FRAMES, tool_poses
 
 DARKER = 60
 """How much darker at least the dark page is than the light one, of 255."""
-
-
-@pytest.fixture(scope="session")
-def made(tmp_path_factory):
-    """`made(**changes)`: file of the page made by hand."""
-    folder = tmp_path_factory.mktemp("page")
-
-    def write(**changes):
-        path = folder / f"page_{len(list(folder.iterdir()))}.html"
-        data = made_data(**changes)
-        path.write_bytes(page_of(data["title"], json.dumps(data).encode()))
-        return path
-
-    return write
 
 
 @pytest.fixture(scope="module")
@@ -95,6 +78,7 @@ def test_events_and_joints(shown):
     shown.page.locator(".events li", has_text="upper position").get_by_role("button").click()
     assert shown.run("() => irlx.frame") == 60
     assert "</script><b>written</b>" in shown.page.locator(".events").inner_text()
+    assert "null" not in shown.page.locator("#events").inner_text()
     held = shown.page.locator("#joints .held")
     assert held.count() == 1
     assert held.inner_text().split() == ["stretch", "300.0", "mm"]
@@ -220,6 +204,8 @@ def test_an_incomplete_run_says_so(made, open_page):
         assert "not complete" in banner
         assert "IRL520" in banner
         assert page.page.locator("#state").inner_text() == "incomplete"
+        page.page.locator("#banner summary").click()
+        assert page.page.get_by_role("alert").inner_text().count("IRL520") == 1
 
 
 def test_without_webgl_the_rest_works(made, open_page):
@@ -253,6 +239,16 @@ def test_it_plays_by_itself_only_where_motion_is_welcome(made, open_page):
         assert page.run("() => irlx.frame") == 0
     with open_page(made(), still=False, where="") as page:
         page.page.wait_for_function("() => irlx.frame > 3")
+
+
+def test_the_time_of_the_address_goes_with_it(made, open_page):
+    path = made()
+    with open_page(path, where="#t=0.5") as page:
+        assert page.run("() => irlx.frame") == 50
+        assert page.page.url == path.as_uri() + "#t=0.5"
+        page.page.keyboard.press("ArrowRight")
+        assert page.page.url == path.as_uri()
+        assert page.run("() => irlx.frame") == 51
 
 
 def test_data_of_another_version_is_refused_in_words(made, browser):
