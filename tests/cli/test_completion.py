@@ -182,3 +182,9 @@ def test_the_help_needs_no_package_for_it(monkeypatch, capsys):
     with pytest.raises(SystemExit):
         main(["completion", "--help"])
     assert "docs/reference/editors.md" in " ".join(capsys.readouterr().out.split())
+
+
+def test_without_a_shell_it_says_which_there_are(capsys):
+    with pytest.raises(SystemExit):
+        main(["completion"])
+    assert "required: {bash,zsh,fish,tcsh}" in capsys.readouterr().err

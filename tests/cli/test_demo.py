@@ -12,6 +12,7 @@ import pytest
 
 import irlx
 from irlx.cell.packaged import demo_texts
+from irlx.cli import demo
 from irlx.cli.main import main
 from irlx.streams.formats import read_stream
 from nearness import nearest
@@ -148,9 +149,10 @@ def test_it_replaces_nothing(tmp_path: Path, monkeypatch, capsys) -> None:
 @pytest.mark.parametrize(
     ("arguments", "code", "words"),
     [
-        (["file"], "IRL003", "cannot write file: Not a directory"),
+        (["file"], "IRL003", "cannot write file: it is a file, not a folder\n  help: name another folder"),
         (["file/below"], "IRL003", "cannot write file/below"),
         (["new", "--robot", "arm8"], "IRL006", "did you mean 'arm7'"),
+        (["new", "--robot", "nope"], "IRL006", "help: irlx robots lists all names"),
     ],
 )
 def test_refusals(tmp_path: Path, monkeypatch, capsys, arguments, code, words) -> None:
@@ -185,3 +187,9 @@ def test_a_run_that_fails_is_told(tmp_path: Path, monkeypatch, capsys) -> None:
     done = called(capsys, "demo")
     assert (done.code, done.out) == (1, "")
     assert done.err.startswith("irlx-demo/demo.irl:16:3: error IRL424")
+
+
+@pytest.mark.parametrize(("shown", "another"), [(None, "rail6"), ("arm7", "rail6"), ("rail6", "arm7")])
+def test_the_robot_to_try_next_is_another(shown: str | None, another: str) -> None:
+    files = demo._Files(*map(Path, FILES))
+    assert f"irlx new first --robot {another} " in demo._next(files, shown)[-1]

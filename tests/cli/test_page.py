@@ -65,7 +65,11 @@ def test_json_tells_the_page(inside, folder):
     assert (found["page"], found["files"]) == ("p.html", ["p.irdata"])
     assert json.loads(inside("run", "p.irl", "--json").stdout)["page"] is None
     (folder / "p.irl").write_text(BEYOND, encoding="utf-8")
-    assert json.loads(inside("run", "p.irl", "--html", "p.html", "--json").stdout)["page"] == "p.partial.html"
+    found = json.loads(inside("run", "p.irl", "--html", "p.html", "--json").stdout)
+    assert (found["page"], found["files"]) == ("p.partial.html", ["p.partial.irdata"])
+    (folder / "p.irl").write_text("PROGRAM", encoding="utf-8")
+    found = json.loads(inside("run", "p.irl", "--html", "p.html", "--json").stdout)
+    assert (found["page"], found["files"], found["summary"]) == (None, [], None)
 
 
 REFUSED = [
@@ -76,9 +80,14 @@ REFUSED = [
     ),
     (["--html", "page"], "error IRL013: --html page: the name of a page ends with .html\n", "page.html"),
     (["--html", "link.html"], "error IRL005: --html link.html would overwrite an input of this run", ""),
-    (["--html", "no/p.html"], "error IRL003: cannot write no/p.html: no such file or directory", ""),
+    (
+        ["--html", "no/p.html"],
+        "error IRL003: cannot write no/p.html: no such file or directory",
+        "name another file with --html\n",
+    ),
     (["--html", "folder.html"], "error IRL003: cannot write folder.html: ", ""),
     (["--html", "twin.html", "-o", "twin.csv"], "error IRL012: --html twin.html is also a stream", ""),
+    (["--html", "a.html", "--html", "b.html"], "error IRL006: --html b.html: one page a run\n", ""),
     (["-o", "p.html"], "error IRL004: -o p.html: no format has the ending '.html'; known: ", "--html"),
 ]
 
@@ -126,7 +135,15 @@ def test_of_a_run_that_ends_in_an_error_a_partial_page_appears(inside, folder, n
     (stop,) = (event for event in data["events"] if event["kind"] == "stop")
     assert stop["first"] == data["frames"]["tick"][-1] > 0
     assert stop["label"].startswith("ended by IRL5")
-    assert any(stop["text"] in line for line in data["diagnostics"])
+    assert any(stop["text"].startswith(line.split("\n")[0]) for line in data["diagnostics"])
+    # It names a tick that was planned: the page and the verdict say that the run did not come so far.
+    end, planned = re.search(r"rests at (\S+) s, what was planned up to (\S+) s", stop["text"]).groups()
+    assert float(end) == pytest.approx(stop["first"] * data["tick_s"])
+    assert float(end) < float(planned)
+    assert float(planned) / data["tick_s"] == pytest.approx(
+        int(re.search(r"\(tick (\d+)\)", stop["text"])[1])
+    )
+    assert f"at line 6, which would come at {planned} s\n" in done.stderr
 
 
 def test_of_a_run_in_which_nothing_moved_no_page_appears(inside, folder, names):

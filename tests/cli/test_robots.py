@@ -105,6 +105,7 @@ def test_a_robot_by_its_urdf(inside, folder):
     [
         (["robots", "arm77"], 2, "did you mean 'arm7'"),
         (["robots", "none.urdf"], 2, "IRL611"),
+        (["robots", "nope"], 2, "error IRL611: no robot 'nope'\n  help: irlx robots lists all names;"),
         (["robots", "--check", "none.urdf"], 2, "IRL001"),
         (["robots", "arm7", "--tip", "tol"], 2, "did you mean 'tool'"),
     ],

@@ -8,13 +8,16 @@ import pytest
 import irlx
 from irlx.diagnostics import report
 from irlx.notebook.findings import Findings
+from irlx.notebook.not_begun import NotBegun
 
 pytest.importorskip("IPython", reason="IPython is not installed: pip install 'irlx[test]'")
+from IPython.core.error import UsageError
 from IPython.core.interactiveshell import InteractiveShell
 from IPython.utils.capture import capture_output
 from traitlets.config import Config
 
 GOOD = "PROGRAM down;\nBEGIN\n  WRITELN('hello');\n  MOVE_INC LIN (0, 0, -20);\nENDPROGRAM;\n"
+WRONG = "PROGRAM down;\nBEGIN\n  MOVE LIN p2 <;\nENDPROGRAM;\n"
 ARM = "%%irl --robot arm7 --tick 40"
 
 
@@ -36,7 +39,8 @@ def cell(shell, tmp_path, monkeypatch):
     def run_cell(text):
         with capture_output() as told:
             done = shell.run_cell(text)
-        assert done.error_in_exec is None or "UsageError" in repr(type(done.error_in_exec))
+        assert done.error_in_exec is None or isinstance(done.error_in_exec, UsageError | NotBegun)
+        assert done.success == (done.error_in_exec is None)
         assert "Traceback" not in told.stdout + told.stderr
         return done.result, told.stdout, told.stderr, told.outputs
 
@@ -68,15 +72,21 @@ def test_a_run_is_shown_as_its_summary_and_a_replay(shell, cell):
 
 
 def test_a_mistake_is_shown_with_line_as_the_notebook_counts_and_caret(cell):
-    run, _, _, outputs = cell(f"{ARM}\nPROGRAM down;\nBEGIN\n  MOVE LIN p2 <;\nENDPROGRAM;\n")
-    assert run is None
-    text = outputs[0].data["text/plain"]
+    run, text, _, outputs = cell(f"{ARM}\n{WRONG}")
+    assert (run, outputs) == (None, [])
     # Line 1 of the cell is that of the magic.
-    assert "notebook.irl:4:16: error IRL101" in text
+    assert "notebook.irl:4:16: \x1b[1;31merror IRL101\x1b[0m" in text
     assert " 4 |   MOVE LIN p2 <;\n   |                ^" in text
-    html = outputs[0].data["text/html"]
-    assert "p2 &lt;;" in html
-    assert ">error IRL101</b>" in html
+
+
+@pytest.mark.parametrize("option", ["--name down", "--check"])
+def test_a_mistake_fails_the_cell_and_leaves_the_variable(shell, option):
+    shell.user_ns["down"] = before = object()
+    with capture_output():
+        done = shell.run_cell(f"{ARM} {option}\n{WRONG}")
+    assert not done.success
+    assert done.error_in_exec.reason.code == "IRL101"
+    assert shell.user_ns["down"] is before
 
 
 def test_a_run_that_ends_in_an_error_leaves_what_was_executed(shell, cell):
@@ -102,9 +112,9 @@ def test_the_cell_is_the_one_given_or_that_of_the_specification(cell, tmp_path):
 
 def test_faults_of_a_cell_come_before_names_that_it_would_have(cell, tmp_path):
     (tmp_path / "bench.toml").write_text('[robot]\nmodel = "arm8"\n[frames]\nhome = 3\n')
-    run, _, _, outputs = cell("%%irl --cell bench.toml\nPROGRAM p;\nBEGIN\n  MOVE LIN home;\nENDPROGRAM;\n")
+    run, text, *_ = cell("%%irl --cell bench.toml\nPROGRAM p;\nBEGIN\n  MOVE LIN home;\nENDPROGRAM;\n")
     assert run is None
-    assert "bench.toml: frames.home: error IRL603" in outputs[0].data["text/plain"]
+    assert "bench.toml: frames.home: \x1b[1;31merror IRL603" in text
 
 
 @pytest.mark.parametrize(
@@ -117,9 +127,9 @@ def test_faults_of_a_cell_come_before_names_that_it_would_have(cell, tmp_path):
     ],
 )
 def test_what_keeps_a_program_from_running(cell, line, told):
-    run, _, _, outputs = cell(f"{line}\n{GOOD}")
+    run, text, *_ = cell(f"{line}\n{GOOD}")
     assert run is None
-    assert told in outputs[0].data["text/plain"]
+    assert told in text.replace("\x1b[1;31m", "").replace("\x1b[0m", "")
 
 
 @pytest.mark.parametrize(

@@ -43,7 +43,9 @@ def add_parser(commands: Any) -> None:
         epilog=_EXAMPLE,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("shell", choices=_SHELLS, help="which shell")
+    shells = f"{{{','.join(_SHELLS)}}}"
+    # What argparse says is missing: the choices, not the word 'shell'.
+    parser.add_argument("shell", choices=_SHELLS, metavar=shells, help="which shell")
     parser.set_defaults(command=command)
 
 

@@ -68,7 +68,7 @@ def command(options: argparse.Namespace) -> int:
     files = _Files(*(folder / f"demo.{ending}" for ending in ("irl", "toml", "irdata", "html")))
     _write(files, *texts)
     run, judged = _executed(files)
-    _print(run, judged, files)
+    _print(run, judged, files, options.robot)
     if options.open:
         import webbrowser
 
@@ -78,8 +78,12 @@ def command(options: argparse.Namespace) -> int:
 
 def _check_empty(folder: Path) -> None:
     """Raises IrlxError: IRL018 for a folder that holds something, IRL003 for what can be no folder."""
+    from irlx.cell.find import is_file
     from irlx.diagnostics import IrlxError, report
 
+    if is_file(folder):
+        cause = "it is a file, not a folder"
+        raise IrlxError(report("IRL003", path=folder, cause=cause, help="name another folder"))
     try:
         filled = folder.exists() and any(folder.iterdir())
     except OSError as cause:
@@ -149,7 +153,7 @@ def _executed(files: _Files) -> tuple[Outcome, Report]:
     return run, judged
 
 
-def _print(run: Outcome, judged: Report, files: _Files) -> None:
+def _print(run: Outcome, judged: Report, files: _Files, robot: str | None) -> None:
     from irlx.cli.output import print_lines
     from irlx.report.lines import Line, Tone, columns
     from irlx.report.terminal import failed_lines
@@ -164,7 +168,7 @@ def _print(run: Outcome, judged: Report, files: _Files) -> None:
     lines += failed_lines({str(files.stream): judged})
     print_lines([*lines, Line("page", files.page.resolve().as_uri(), Tone.GOOD)])
     print("\nNext, for instance:")
-    print_lines([Line(None, f"  {words}", Tone.FIGURE) for words in _next(files)])
+    print_lines([Line(None, f"  {words}", Tone.FIGURE) for words in _next(files, robot)])
 
 
 def _short(run: Outcome, judged: Report) -> list[Line]:
@@ -179,15 +183,16 @@ def _short(run: Outcome, judged: Report) -> list[Line]:
     return lines
 
 
-def _next(files: _Files) -> list[str]:
+def _next(files: _Files, robot: str | None) -> list[str]:
     """Three commands to try, with what they do; a shell takes that for a comment."""
     program, stream = (shlex.quote(str(path)) for path in (files.program, files.stream))
     from irlx.report.lines import columns
 
+    another = "arm7" if robot == "rail6" else "rail6"
     return columns(
         [
             (f"irlx run {program}", "# again: change a number in it first"),
             (f"irlx plot {stream}", "# every joint over time, here"),
-            ("irlx new first --robot rail6", "# a cell and a program for another robot"),
+            (f"irlx new first --robot {another}", "# a cell and a program for another robot"),
         ]
     )

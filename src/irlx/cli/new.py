@@ -111,7 +111,8 @@ def known_robot(name: str) -> str:
     names = tuple(robot.name for robot in robot_overviews())
     if name not in names:
         cause = f"no robot has this name{near_matches(name, names)}"
-        raise IrlxError(report("IRL006", option="--robot", value=name, cause=cause))
+        helps = "irlx robots lists all names"
+        raise IrlxError(report("IRL006", option="--robot", value=name, cause=cause, help=helps))
     return name
 
 

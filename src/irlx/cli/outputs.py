@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 __all__ = ["output_paths", "page_path", "written"]
@@ -33,19 +34,22 @@ def output_paths(asked: Sequence[str | Path], inputs: tuple[Path, ...]) -> list[
     return paths
 
 
-def page_path(asked: str, inputs: tuple[Path, ...], outputs: Sequence[Path]) -> Path:
-    """The page to write, checked before anything moves.
+def page_path(asked: Sequence[str], inputs: tuple[Path, ...], outputs: Sequence[Path]) -> Path | None:
+    """The page to write, checked before anything moves; None where none is asked for.
 
-    Raises StreamError: IRL003 not writable, IRL005 an input would be overwritten, IRL012 a stream of this
-    run has that name, IRL013 another ending.
+    Raises StreamError: IRL003 not writable, IRL005 an input would be overwritten, IRL006 a second page,
+    IRL012 a stream of this run has that name, IRL013 another ending.
     """
     from irlx.diagnostics import report
     from irlx.report.file_recording import partial_name
     from irlx.report.replay.names import is_page
-    from irlx.streams.atomic import check_writable
     from irlx.streams.error import StreamError
 
-    path = Path(asked)
+    if not asked:
+        return None
+    if len(asked) > 1:
+        raise StreamError(report("IRL006", option="--html", value=asked[1], cause="one page a run"))
+    path = Path(asked[0])
     if not is_page(path):
         raise StreamError(report("IRL013", path=path, example=f"{path.stem or 'page'}.html"))
     if any(_holds(path, source) for source in inputs):
@@ -54,8 +58,20 @@ def page_path(asked: str, inputs: tuple[Path, ...], outputs: Sequence[Path]) -> 
     taken = {os.path.realpath(name) for output in outputs for name in (output, partial_name(output))}
     if {os.path.realpath(path), os.path.realpath(partial_name(path))} & taken:
         raise StreamError(report("IRL012", path=path, what="a stream of this run"))
-    check_writable(path)
+    _check_page(path)
     return path
+
+
+def _check_page(path: Path) -> None:
+    """Raises StreamError, IRL003, where no page can be put."""
+    from irlx.streams.atomic import check_writable
+    from irlx.streams.error import StreamError
+
+    try:
+        check_writable(path)
+    except StreamError as error:
+        helps = "name another file with --html"
+        raise StreamError([replace(found, help=helps) for found in error.diagnostics]) from error
 
 
 def _holds(path: Path, source: Path) -> bool:

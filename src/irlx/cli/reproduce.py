@@ -25,7 +25,8 @@ def reproduced(options: argparse.Namespace) -> int:
 
     for name, option in _OF_ITS_OWN.items():
         if getattr(options, name):
-            value = str(getattr(options, name))
+            given = getattr(options, name)
+            value = str(given[0] if isinstance(given, list) else given)
             cause = "beside --reproduce only P, --cell, --inputs, --files and --plugin may be given"
             raise IrlxError(report("IRL006", option=option, value=value, cause=cause))
     import_plugins(options.plugin)

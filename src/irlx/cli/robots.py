@@ -7,6 +7,7 @@ import json
 import sys
 from collections import Counter
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from math import degrees, isinf
 from typing import TYPE_CHECKING, Any
 
@@ -112,9 +113,7 @@ def _aligned(rows: Iterable[Sequence[str]]) -> list[str]:
 
 def _show(options: argparse.Namespace) -> int:
     """Joints of one robot, with units of cells: deg | mm."""
-    from irlx.cell.bare_robot import bare_robot
-
-    found = bare_robot(options.name, options.tip)
+    found = _found(options.name, options.tip)
     robot, joints = found.robot, [_joint(found, index) for index in range(len(found.robot.axes))]
     if options.json:
         plain = {"name": options.name, "root": robot.root, "tip": robot.tip, "task": list(robot.coordinates)}
@@ -134,6 +133,23 @@ def _show(options: argparse.Namespace) -> int:
         rows.append((joint["name"], joint["kind"], joint["unit"], start, *limits))
     _print("\n".join([*lines, *_aligned(rows)]))
     return 0
+
+
+def _found(name: str, tip: str | None) -> BareRobot:
+    """The robot. Raises CellError, of a name that is none in words for a command: there is no cell file."""
+    from irlx.cell.bare_robot import bare_robot
+    from irlx.cell.errors import CellError
+
+    try:
+        return bare_robot(name, tip)
+    except CellError as error:
+        helps = "irlx robots lists all names; of a URDF give the path"
+        raise CellError(
+            [
+                replace(one, place=None, help=helps) if one.code == "IRL611" else one
+                for one in error.diagnostics
+            ]
+        ) from error
 
 
 def _joint(found: BareRobot, index: int) -> dict[str, Any]:

@@ -100,6 +100,8 @@ def _add_output_options(parser: Any) -> None:
     )
     parser.add_argument(
         "--html",
+        action="append",
+        default=[],
         metavar="F.html",
         help="also write a page that replays the run: robot, program and curves in one file for any browser",
     )
@@ -133,7 +135,8 @@ def command(options: argparse.Namespace) -> int:
         print_diagnostics(error.diagnostics)
         if not options.json:
             _print_tick(error.run, options)
-        _tell_partial(error.run, [*outputs, *_pages(page)], _why(error.diagnostics[0]), options)
+        why = _why(error.diagnostics[0], error.run)
+        _tell_partial(error.run, [*outputs, *_pages(page)], why, options)
         return exit_code(error.diagnostics)
     except RunInterrupted as interrupt:
         text.end_line()
@@ -182,7 +185,7 @@ def _prepared(options: argparse.Namespace, text: ProgramText) -> tuple[Job, list
         inputs += () if options.inputs is None else (Path(options.inputs),)
         asked_for = options.output or [_default_output(job)]
         outputs = output_paths(asked_for, inputs)
-        page = None if options.html is None else page_path(options.html, inputs, outputs)
+        page = page_path(options.html, inputs, outputs)
         channels = job.channels.protecting(written(outputs), "a stream of this run")
         channels = channels.protecting(written(_pages(page)), "the page of this run")
         if options.inputs is not None:
@@ -190,7 +193,8 @@ def _prepared(options: argparse.Namespace, text: ProgramText) -> tuple[Job, list
         return replace(job, channels=channels), outputs, page
     except IrlxError as error:
         if options.json:
-            plain = {"summary": None, "output": "", "diagnostics": _plain_diagnostics(error.diagnostics)}
+            nothing: dict[str, object] = {"summary": None, "output": "", "files": [], "page": None}
+            plain = {**nothing, "diagnostics": _plain_diagnostics(error.diagnostics)}
             print(json.dumps(plain, indent=2))
         raise
 
@@ -204,10 +208,14 @@ def _default_output(job: Job) -> Path:
     return beside if os.access(beside.parent, os.W_OK) else Path(beside.name)
 
 
-def _why(error: Diagnostic) -> str:
+def _why(error: Diagnostic, run: Outcome) -> str:
     """What ended a run, in short: its message has been printed."""
+    from irlx.report.unreached import unreached_time
+
     line = error.place.line if error.place is not None else None
-    return error.code if line is None else f"{error.code} at line {line}"
+    words = error.code if line is None else f"{error.code} at line {line}"
+    time = unreached_time(error, run.summary.samples - 1, run.header.dt)
+    return words if time is None else f"{words}, which would come at {time:.6g} s"
 
 
 def _tell_partial(run: Outcome, outputs: list[Path], why: str, options: argparse.Namespace) -> None:
@@ -232,6 +240,7 @@ def _tell_partial(run: Outcome, outputs: list[Path], why: str, options: argparse
         plain = {
             "summary": run.summary.to_plain(),
             "output": run.output,
+            "files": [str(path) for path in run.files],
             "page": None if run.page is None else str(run.page),
             "diagnostics": _plain_diagnostics(run.diagnostics),
         }

@@ -12,6 +12,7 @@ from IPython.display import display
 
 from irlx.diagnostics import Diagnostic, IrlxError
 from irlx.notebook.findings import Findings
+from irlx.notebook.not_begun import NotBegun
 from irlx.notebook.options import magic_parser
 from irlx.notebook.typed_input import TypedInput
 
@@ -38,7 +39,7 @@ def load_ipython_extension(shell: Any) -> None:
 
 
 def _irl(shell: Any, options: argparse.Namespace, body: str) -> Run | None:
-    """What the program in a cell has come to; None where it did not begin, and where nobody wants it."""
+    """What the program in a cell has come to, None where nobody wants it; raises NotBegun."""
     if options.name is not None and not options.name.isidentifier():
         raise UsageError(f"%%irl --name {options.name}: no name of a variable")
     # The line of the magic is the first one of the cell: lines count as the notebook counts them.
@@ -49,8 +50,7 @@ def _irl(shell: Any, options: argparse.Namespace, body: str) -> Run | None:
             return None
         run = _run(text, options)
     except IrlxError as error:
-        _show(tuple(map(_in_a_notebook, error.diagnostics)))
-        return None
+        raise NotBegun(tuple(map(_in_a_notebook, error.diagnostics))) from None
     if options.name is not None:
         shell.push({options.name: run})
     return None if options.quiet else run
@@ -70,10 +70,12 @@ _NO_CELL = "write %%irl --robot NAME (koch11, arm7, ..; irlx robots has all), or
 
 
 def _checked(text: str, options: argparse.Namespace) -> tuple[Diagnostic, ...]:
-    """Findings of a text, lints as well."""
+    """Warnings of a text, lints as well. Raises IrlxError where there are errors."""
     from irlx.program import analyse_text
 
     found = analyse_text(text, _FILE, _cell(options)).diagnostics
+    if any(one.is_error for one in found):
+        raise IrlxError(found)
     if not found:
         print(f"{_FILE}: 0 errors, 0 warnings")
     return found

@@ -17,6 +17,7 @@ from irlx.report.message import Message
 from irlx.report.replay.gathering import MOST_SHOWN, Gathered
 from irlx.report.signals import signals_of
 from irlx.report.terminal import PER, joint_value
+from irlx.report.unreached import unreached_time
 from irlx.robot.limits import JointLimits
 from irlx.streams.joint_stream import StreamHeader
 
@@ -36,7 +37,7 @@ def replay_events(
     events += [*_nearest(found), *_signals(header, found), *_waits(found)]
     events += [_message(message) for message in found.messages]
     last = max(found.rows - 1, 0)
-    events += [_event("stop", last, last, f"ended by {error.code}", str(error)) for error in errors]
+    events += [_stop(last, header.dt, error) for error in errors]
     return sorted(events, key=lambda event: (event["first"], event["last"]))
 
 
@@ -139,6 +140,13 @@ def _waits(found: Gathered) -> Iterator[Event]:
         open_one = _event("wait", record.tick, last, label, f"the robot stands: {label}", line)
     if open_one is not None:
         yield open_one
+
+
+def _stop(last: int, dt: float, error: Diagnostic) -> Event:
+    words, time = str(error), unreached_time(error, last, dt)
+    if time is not None:
+        words += f"; the robot rests at {last * dt:.6g} s, what was planned up to {time:.6g} s is left out"
+    return _event("stop", last, last, f"ended by {error.code}", words)
 
 
 def _message(message: Message) -> Event:
