@@ -14,7 +14,7 @@ import numpy as np
 from irlx.diagnostics import Diagnostic, IrlxError, Place, report
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.diagnostics.extra import require_extra
-from irlx.report.plot.chosen_joints import busiest_joints, joints_named
+from irlx.report.plot.chosen_joints import busiest_joints, joints_named, told_numbers
 from irlx.report.plot.curves import Curves
 from irlx.report.plot.make_curves import Subject, curves_of
 from irlx.report.plot.quantity import JOINT_QUANTITIES, QUANTITIES, Quantity
@@ -32,7 +32,7 @@ PathLike = str | os.PathLike[str]
 
 PICTURES = (".svg", ".png", ".pdf")
 """Endings of the figures that can be written."""
-COLUMNS, MILLIMETRES = (40, 1000), (100, 2000)
+COLUMNS, MILLIMETRES = (20, 1000), (100, 2000)
 """Narrowest and widest diagrams in a terminal, and figures."""
 IN_TERMINAL = (Quantity.POSITION, Quantity.SPEED, Quantity.PATH_SPEED)
 """What is drawn in a terminal where nothing is asked for."""
@@ -44,11 +44,13 @@ _ORDER = ("first", "second")
 @dataclass(frozen=True, eq=False)
 class Plotted:
     """Curves of one stream, or of two with the same joints; the `joints` (from 0) to draw, in that order;
-    notes on what is left out."""
+    notes on what is left out; `numbers`, in words, by which joints were asked for and which they do not have
+    in their names."""
 
     curves: tuple[Curves, ...]
     joints: tuple[int, ...]
     notes: tuple[Diagnostic, ...]
+    numbers: tuple[str, ...] = ()
 
 
 def plot(
@@ -98,19 +100,20 @@ def plotted(
     subjects = _named_apart([_subject(source, given, asks) for source in sources], sources)
     _check_joints(subjects)
     span = _window(subjects, window)
-    chosen = None if joints is None else joints_named(joints, subjects[0].stream.header.joint_names)
+    names = subjects[0].stream.header.joint_names
+    chosen = None if joints is None else joints_named(joints, names)
     made = [curves_of(subject, wanted, span) for subject in subjects]
     curves = tuple(one for one, _ in made)
     notes = tuple(note for _, own in made for note in own)
     has_joints = any(quantity in wanted for quantity in JOINT_QUANTITIES)
     if not has_joints and not any(one.tracks for one in curves):
-        cause = notes[0].message if notes else "the robot keeps clear of nothing that came near"
+        cause = notes[0].message if notes else "nothing came within the influence of what is kept clear of"
         shown = ",".join(quantity.value for quantity in wanted)
         raise IrlxError(report("IRL006", option="--show", value=shown, cause=f"nothing to draw: {cause}"))
     if chosen is None:
         count = len(curves[0].joint_names)
         chosen = list(range(count)) if most_joints is None else busiest_joints(curves, most_joints)
-    return Plotted(curves, tuple(chosen), notes)
+    return Plotted(curves, tuple(chosen), notes, tuple(told_numbers(joints or (), names)))
 
 
 def quantities_named(names: Collection[str]) -> tuple[Quantity, ...]:

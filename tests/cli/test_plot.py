@@ -76,6 +76,25 @@ def test_width_show_and_joints_in_the_terminal(inside, streams):
     ]
 
 
+def test_a_terminal_that_is_too_narrow(inside, streams, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "20")
+    assert max(map(len, inside("plot", "a.irdata").stdout.splitlines())) == 20
+    monkeypatch.setenv("COLUMNS", "12")
+    done = inside("plot", "a.irdata")
+    words = "a terminal of 12 columns: needs 20 at least; --width names another width"
+    assert (done.returncode, done.stdout, done.stderr) == (2, "", f"error IRL006: {words}\n")
+
+
+def test_which_joint_a_number_means(inside, streams):
+    made = DrawnStream(("rail", "joint_1"), ("m", "rad"), JointLimits.unlimited(2))
+    made.move(np.zeros((3, 2)))
+    write_stream(made.stream(), streams / "r.irdata")
+    done = inside("plot", "r.irdata", "--joints", 2, "--show", "position")
+    assert done.stderr == "joints      2 is joint_1: numbers count all joints from 1\n"
+    assert "joint_1 position" in done.stdout
+    assert inside("plot", "r.irdata", "--joints", "1,joint_1", "--show", "position").stderr == ""
+
+
 def test_from_and_to(inside, streams):
     done = inside("plot", "a.irdata", "--from", 1, "--to", "2.5", "--show", "speed")
     assert done.stdout.splitlines()[8].split() == ["30", "2.5", "s"]
@@ -124,6 +143,9 @@ def test_robot_by_the_cell_beside_the_stream_or_by_cell(inside, folder, run):
     assert "IRL019: clearance is left out: the obstacles of its cell are not known" in done.stderr
     by_cell = inside(*asked, "--cell", KOCH / "line.toml")
     assert (by_cell.stdout, by_cell.stderr) == (done.stdout, "")
+    done = inside("plot", "line.irdata", "--show", "clearance", "--cell", KOCH / "line.toml")
+    assert done.returncode == 2
+    assert "nothing to draw: nothing came within the influence of what is kept clear of" in done.stderr
     (folder / "line.toml").write_bytes((KOCH / "line.toml").read_bytes())
     assert inside(*asked).stderr == ""
 
@@ -151,6 +173,7 @@ def test_of_many_joints_the_busiest(inside, folder, run):
     [
         (["absent.irdata"], "IRL001: no such file: absent.irdata"),
         (["a.dat"], "IRL707"),
+        (["p.irl"], "help: this is a program; irlx run p.irl -o out.irdata writes its stream"),
         (["a.irdata", "-o", "a.jpg"], "IRL004: -o a.jpg: no format has the ending '.jpg'; known: .svg, .png"),
         (["a.irdata", "-o", "gone/a.svg"], "IRL003: cannot write gone/a.svg: no such file or directory"),
         (["a.irdata", "-o", "link.svg"], "IRL005: -o link.svg would overwrite an input"),
@@ -162,7 +185,7 @@ def test_of_many_joints_the_busiest(inside, folder, run):
         (["a.irdata", "--show", ""], "IRL006: --show ''"),
         (["a.irdata", "--from", "9"], "--from 9: a.irdata has no sample from there on; it lasts 3.22 s"),
         (["a.irdata", "--from", "2", "--to", "1"], "--to 1: the end must lie behind the beginning, 2 s"),
-        (["a.irdata", "--width", "9"], "IRL006: --width 9: needs 40 to 1000 columns"),
+        (["a.irdata", "--width", "9"], "IRL006: --width 9: needs 20 to 1000 columns"),
         (["a.irdata", "--width", "nan"], "IRL006: --width nan"),
         (["a.irdata", "--width", "9", "-o", "x.svg"], "IRL006: --width 9: needs 100 to 2000 mm"),
         (["a.irdata", "--cell", "q.toml"], "IRL001"),

@@ -11,6 +11,7 @@ from irlx.blocks import (
     AskClearance,
     AskPose,
     AskPosture,
+    AskStandstill,
     Blend,
     Block,
     JointIncrement,
@@ -138,7 +139,17 @@ def test_questions_that_do_not_ask_where_the_robot_is_stop_nothing() -> None:
     assert notes == []
     assert [len(group) for group in ahead.before(AskPosture(origin(3)))] == [1]
     assert [note.code for note in notes] == ["IRL432"]
+    assert "the answer depends on where the robot stands" in notes[0].message
     assert ahead.before(AskPosture(origin(3))) == []
+
+
+def test_what_is_written_is_no_question() -> None:
+    notes: list[Diagnostic] = []
+    ahead = Lookahead(lambda o: Place.in_text(TEXT, Span(o.start, o.end)), Notes(notes))
+    assert ahead.take(move(1)) == []
+    assert [len(group) for group in ahead.before(AskStandstill(origin(2)))] == [1]
+    assert [note.code for note in notes] == ["IRL432"]
+    assert "what comes next waits until the moves are done" in notes[0].message
 
 
 @pytest.mark.req("LANG-54")

@@ -1,13 +1,18 @@
 """What comes nearest in every sample: what the ticks have looked at, and looked at again."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 import irlx
 from irlx.cell.load import load_cell
+from irlx.pacing.nearest_rows import FAR, nearest_of
 from irlx.robot.kinematics import Kinematics
 from irlx.scene.distances import Distances
-from irlx.scene.watched_pair import watched_pairs
+from irlx.scene.watched_pair import WatchedPair, watched_pairs
+from irlx.solids.placement import Placement
+from irlx.solids.shape import Solid, Sphere
 
 CELL = """
 [robot]
@@ -66,3 +71,13 @@ def test_samples_have_the_pair_with_the_least_room(tmp_path):
     assert near > 30
     # The hold rows between the moves, and the wait, are among them.
     assert len(run.q) > 150
+
+
+def test_links_that_always_stand_at_the_influence_are_not_near():
+    ball = Solid(Sphere(0.1), Placement())
+    pair = WatchedPair("wrist", ball, "torch", ball, 0.005, 0.03)
+    clearance = SimpleNamespace(distances=SimpleNamespace(pairs=(pair,)))
+    found = nearest_of(clearance, [(0, 0.03 * (1.0 - 1e-13)), (0, 0.0299), None])
+    assert found.pair.tolist() == [FAR, 0, FAR]
+    np.testing.assert_array_equal(found.distance, [np.inf, 0.0299, np.inf])
+    assert found.pairs == (("wrist", "torch"),)

@@ -91,6 +91,11 @@ def test_a_plain_run() -> None:
     )
 
 
+def test_a_slowed_run_is_not_said_to_meet_no_limit() -> None:
+    # A plan that slows the tool for a joint's limit need not meet it in any tick.
+    assert "at a limit" not in summary_text(replace(PLAIN, slowed=(slow(4, 10, 0.31),)))
+
+
 def test_a_run_with_all_there_is_to_tell() -> None:
     assert summary_text(FULL, True).splitlines() == [
         "p.irl: complete, verified, 1 s, slowed by 0.36 s, nearest 27.5 mm",

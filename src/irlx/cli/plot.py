@@ -68,7 +68,7 @@ def add_parser(commands: Any) -> None:
 
 def command(options: argparse.Namespace) -> int:
     """Write the figures, or print the curves on stdout; notes on what is left out go to stderr."""
-    from irlx.cli.output import print_diagnostics
+    from irlx.cli.output import encodable, print_diagnostics
     from irlx.plotting import COLUMNS, IN_TERMINAL, MILLIMETRES, checked_width, plotted
     from irlx.report.plot.terminal import MOST_JOINTS
 
@@ -87,6 +87,9 @@ def command(options: argparse.Namespace) -> int:
         None if outputs else MOST_JOINTS,
     )
     print_diagnostics(found.notes)
+    if found.numbers:
+        words = f"{'joints':<12}{', '.join(found.numbers)}: numbers count all joints from 1"
+        print(encodable(words, sys.stderr), file=sys.stderr)
     if outputs:
         _write(outputs, found, width)
     else:
@@ -108,11 +111,14 @@ def _print(found: Any, width: float | None) -> None:
     from shutil import get_terminal_size
 
     from irlx.cli.output import coloured, encodable
+    from irlx.diagnostics import IrlxError, report
     from irlx.plotting import COLUMNS
     from irlx.report.plot.terminal import terminal_text
 
-    columns = int(width) if width is not None else get_terminal_size(_FALLBACK).columns
-    columns = min(max(columns, COLUMNS[0]), COLUMNS[1])
+    columns = int(width) if width is not None else min(get_terminal_size(_FALLBACK).columns, COLUMNS[1])
+    if columns < COLUMNS[0]:
+        cause = f"needs {COLUMNS[0]} at least; --width names another width"
+        raise IrlxError(report("IRL006", option="a terminal of", value=f"{columns} columns", cause=cause))
     text = terminal_text(found.curves, found.joints, columns, coloured=coloured(sys.stdout))
     print(encodable(text, sys.stdout))
 

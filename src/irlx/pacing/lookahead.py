@@ -8,6 +8,7 @@ from irlx.blocks import (
     AskClearance,
     AskManipulability,
     AskPose,
+    AskStandstill,
     Block,
     JointIncrement,
     JointTarget,
@@ -65,6 +66,8 @@ class Lookahead:
         if isinstance(question, AskClearance):
             why = "the answer depends on where the obstacles are by then"
             return self.stop(question.origin, why) if self._obstacles_move else []
+        if isinstance(question, AskStandstill):
+            return self.stop(question.origin, "what comes next waits until the moves are done")
         return self.stop(question.origin, "the answer depends on where the robot stands")
 
     def stop(self, where: Origin | None, why: str) -> list[tuple[Block, ...]]:

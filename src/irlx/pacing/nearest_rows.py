@@ -15,6 +15,10 @@ Array = NDArray[np.float64]
 FAR = -1
 """Stands for a pair where all are farther away than they count."""
 
+WITHIN = 1.0 - 1e-9
+"""Part of its influence up to which a pair is near: some links always stand at that very distance, but for
+rounding."""
+
 
 @dataclass(frozen=True)
 class NearestRows:
@@ -54,6 +58,8 @@ def nearest_of(clearance: Clearance, found: Sequence[Closest]) -> NearestRows:
         if nearest is None:
             continue
         watched = clearance.distances.pairs[nearest[0]]
+        if nearest[1] >= WITHIN * watched.influence:
+            continue
         key = (watched.link, watched.other)
         if key not in names:
             names[key] = len(names)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.pacing.nearest_rows import FAR
+from irlx.pacing.nearest_rows import FAR, WITHIN
 from irlx.report.clearances import Clearances
 from irlx.robot.description import RobotDescription
 from irlx.scene.scene import Scene
@@ -16,9 +16,6 @@ from irlx.verifier.outline import Outline
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
-
-_ROUNDING = 1e-9
-"""Part of an influence by which a pair must be nearer: some links stand at the same distance always."""
 
 _ALWAYS = ((0, int(np.iinfo(np.int64).max)),)
 
@@ -41,7 +38,7 @@ def clearances_over(
         here = np.flatnonzero(rows_in(spans, rows))
         for meeting in meetings(pair, places):
             found = capped_distances(meeting, here, np.full(len(here), influence))
-            counts = found < influence * (1.0 - _ROUNDING)
+            counts = found < WITHIN * influence
             nearer = counts & (found - pair.margin < room[here])
             which = here[nearer]
             least[which], nearest[which] = found[nearer], number

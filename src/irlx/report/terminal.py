@@ -40,7 +40,7 @@ def summary_lines(summary: Summary, verified: bool | None = None) -> list[Line]:
     worst = f"{summary.path_position_error:.2g} m, {summary.path_orientation_error:.2g} rad at worst"
     lines.append(Line("path error", worst))
     lines += under("limit use", _uses(summary.limit_use, units))
-    lines += under("at a limit", _active(summary.active, _tick(summary)))
+    lines += under("at a limit", _active(summary.active, _tick(summary), bool(summary.slowed)))
     if summary.clearance is not None:
         lines.append(Line("clearance", _clearance(summary.clearance)))
     if summary.closure is not None:
@@ -128,10 +128,11 @@ def _of(value: float, bound: float, unit: str, per: str) -> str:
     return f"{value * scale:.4g} of {bound * scale:.4g} {name}{per}"
 
 
-def _active(events: Sequence[LimitActive], dt: float) -> list[str]:
+def _active(events: Sequence[LimitActive], dt: float, slowed: bool) -> list[str]:
     """A line for each joint and bound that was held longest: how long in all, from when to when."""
     if not events:
-        return ["no joint was held by one"]
+        # A plan that slows the tool has its pace from limits without meeting them in any tick.
+        return [] if slowed else ["no joint was held by one"]
     spans: dict[tuple[str, str], list[LimitActive]] = {}
     for event in events:
         # Of rates nobody wants to know the direction, of positions everybody.

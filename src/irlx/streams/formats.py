@@ -52,6 +52,7 @@ FORMATS = {
 }
 """Every format by its ending, lower case with the dot."""
 
+_OF_A_PROGRAM = "this is a program; irlx run {path} -o out.irdata writes its stream, which can be given here"
 KNOWN_ENDINGS: tuple[str, ...] = tuple(FORMATS)
 """File endings that `write_stream` and `read_stream` know."""
 
@@ -108,5 +109,6 @@ def format_of(path: str | os.PathLike[str], code: str = "IRL707") -> StreamForma
     ending = Path(path).suffix
     chosen = FORMATS.get(ending.lower())
     if chosen is None:
-        raise StreamError(report(code, path=path, ending=ending, known=", ".join(KNOWN_ENDINGS)))
+        help = _OF_A_PROGRAM if code == "IRL707" and ending.lower() == ".irl" else None
+        raise StreamError(report(code, help=help, path=path, ending=ending, known=", ".join(KNOWN_ENDINGS)))
     return chosen

@@ -5,7 +5,7 @@ import pytest
 
 from drawn_streams import DrawnStream
 from irlx.diagnostics import IrlxError
-from irlx.report.plot.chosen_joints import busiest_joints, joints_named
+from irlx.report.plot.chosen_joints import busiest_joints, joints_named, told_numbers
 from irlx.report.plot.make_curves import Subject, curves_of
 from irlx.report.plot.quantity import Quantity
 from irlx.robot.limits import JointLimits
@@ -57,3 +57,9 @@ def test_names_before_numbers():
     for wrong in ("7", 0, "-1", "", "frei"):
         with pytest.raises(IrlxError, match="IRL006"):
             joints_named([wrong], NAMES)
+
+
+def test_numbers_that_are_not_those_in_the_names_are_told():
+    names = ("rail", "joint_1", "joint_2", "left_4", "arm7_5")
+    assert told_numbers(["1", "joint_2", "4", 5], names) == []
+    assert told_numbers(["3", 2, "03"], names) == ["3 is joint_2", "2 is joint_1", "3 is joint_2"]

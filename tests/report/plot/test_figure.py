@@ -1,5 +1,6 @@
 """Figures: the right lines with the right data at the right places, and the same bytes twice."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -7,7 +8,10 @@ import pytest
 
 pytest.importorskip("matplotlib")
 
-from drawn_streams import DrawnStream, square_and_slow
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+from drawn_streams import DT, DrawnStream, square_and_slow
+from irlx.report.plot.curves import Track
 from irlx.report.plot.figure import draw_figure, save_figure
 from irlx.report.plot.make_curves import Subject, curves_of
 from irlx.report.plot.panel import MOST_POINTS, thinned
@@ -92,10 +96,55 @@ def test_moves_and_slowed_tool(page, curves):
     assert legend(page) == [
         "limit in force",
         "programmed",
-        "at a limit",
+        "at or near a limit",
         "slower than programmed",
         "move begins, its line above",
     ]
+
+
+def test_numbers_of_far_limits_stand_inside_and_clear_of_the_curve():
+    bound = np.array([3.0, 9.0])
+    limits = JointLimits.unlimited(2).with_pair("position", -bound, bound)
+    made = DrawnStream(limits=limits, start=(0.0, 0.0))
+    part = np.linspace(0.0, 1.0, 200)
+    # One rises to the right, one stands high at both ends.
+    made.move(np.column_stack([0.8 * part, 0.4 * np.cos(2.0 * np.pi * part)]))
+    figure = draw_figure([curves_of(Subject(made.stream(), "a"), [Quantity.POSITION])[0]], [0, 1])
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    for axes in figure.axes:
+        numbers, (line,) = of(axes, "far limit"), of(axes, "curve 0")
+        assert len(numbers) == 2
+        points = axes.transData.transform(np.column_stack([line.get_xdata(), line.get_ydata()]))
+        for number in numbers:
+            box = number.get_window_extent(renderer)
+            assert axes.bbox.x0 < box.x0 < box.x1 < axes.bbox.x1
+            assert axes.bbox.y0 < box.y0 < box.y1 < axes.bbox.y1
+            assert not box.count_contains(points)
+
+
+def test_programmed_speed_and_margin_are_told_apart(curves):
+    t = curves.t
+    near = Track("clearance", "mm", t, np.full(len(t), 50.0), np.full(len(t), 20.0), "margin")
+    figure = draw_figure([replace(curves, tracks={**curves.tracks, Quantity.CLEARANCE: (near,)})], [])
+    handles = {line.get_label(): line for line in figure.legends[0].get_lines()}
+    styles = []
+    for name in ("programmed", "margin"):
+        (drawn,) = [line for axes in figure.axes for line in of(axes, name)]
+        told = handles[name]
+        assert drawn.get_color() == told.get_color()
+        assert drawn._dash_pattern == told._dash_pattern
+        styles.append((drawn.get_color(), drawn._dash_pattern))
+    assert styles[0][0] != styles[1][0]
+    assert styles[0][1] != styles[1][1]
+
+
+def test_many_short_moves_are_no_barcode():
+    made = DrawnStream()
+    for number in range(200):
+        made.move(np.full((4, 2), 0.001 * number))
+    figure = draw_figure([curves_of(Subject(made.stream(), "a"), [Quantity.SPEED])[0]], [0])
+    assert [line.get_xdata()[0] for line in of(figure.axes[0], "move")] == pytest.approx([0.0, 199 * 5 * DT])
+    assert len([text for text in figure.axes[0].texts if text.get_text().isdecimal()]) == 2
 
 
 def test_two_streams_over_each_other(curves, other):

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from drawn_streams import DT, square_and_slow
-from irlx.report.plot.make_curves import AT_RATE, Subject, curves_of
+from irlx.report.plot.limit_spans import AT_RATE
+from irlx.report.plot.make_curves import Subject, curves_of
 from irlx.report.plot.quantity import JOINT_QUANTITIES, QUANTITIES, Quantity
 
 pytestmark = pytest.mark.req("REP-03")
@@ -67,6 +68,18 @@ def test_what_slows_the_tool_is_at_its_limit_below_it_too(stream):
     other = type(stream)(stream.header, stream.records, stream.ticks, q, stream.block, stream.tool, True)
     curves, _ = curves_of(Subject(other, "x"), JOINT_QUANTITIES)
     assert curves.spans(Quantity.SPEED, 1)[1] == pytest.approx((1.41, 121 * DT + 1.61))
+
+
+@pytest.mark.parametrize(("part", "joints"), [(0.91, [1]), (0.985, [0])])
+def test_of_joints_near_their_limits_while_slowed_the_one_that_decides(stream, part, joints):
+    # The slide uses 93 % of its limit, the turn more or less than that.
+    q = stream.q.copy()
+    ticks = np.arange(len(q) - 121)
+    q[121:] = np.column_stack([1.0 - 0.03 * part * ticks, q[121, 1] - 0.00093 * ticks])
+    other = type(stream)(stream.header, stream.records, stream.ticks, q, stream.block, stream.tool, True)
+    curves, _ = curves_of(Subject(other, "x"), JOINT_QUANTITIES)
+    found = {joint for joint in (0, 1) for begin, _ in curves.spans(Quantity.SPEED, joint) if begin > 1.2}
+    assert sorted(found) == joints
 
 
 def test_moves_and_slowed_spans(curves):

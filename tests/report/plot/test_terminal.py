@@ -92,7 +92,7 @@ def test_a_peak_of_one_tick_is_seen():
 
 
 def test_every_line_fits(curves):
-    for width in (40, 61, 80, 133):
+    for width in (20, 40, 61, 80, 133):
         text = terminal_text([curves], [0, 1], width)
         assert max(map(len, text.splitlines())) <= width
         assert "turn acceleration" in text
@@ -101,6 +101,22 @@ def test_every_line_fits(curves):
     assert len(terminal_text([curves], [0], 133).splitlines()) < len(
         terminal_text([curves], [0], 40).splitlines()
     )
+
+
+def test_headings_fit_as_well(curves):
+    long = replace(curves, title="a_longer_name_than_most.irl", name="one.irdata")
+    assert terminal_text([long], [0], 30).splitlines()[:2] == ["a_longer_name_than_most.irl,", "drawer"]
+    lines = terminal_text([long, replace(curves, name="two.irdata")], [0], 30).splitlines()
+    assert lines[:2] == ["one.irdata (dashed)", "and two.irdata, drawer"]
+
+
+def test_of_many_short_moves_the_axis_is_no_barcode():
+    made = DrawnStream()
+    for number in range(200):
+        made.move(np.full((4, 2), 0.001 * number))
+    lines = terminal_text([shown(Quantity.POSITION, stream=made.stream())], [0], 80).splitlines()
+    assert lines[7].count("\N{BOX DRAWINGS LIGHT DOWN AND HORIZONTAL}") == 2
+    assert lines[8].split() == ["10", "10", "s"]
 
 
 def test_colour_changes_no_character(curves):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 import numpy as np
@@ -29,6 +30,19 @@ def joints_named(wanted: Sequence[str | int], names: tuple[str, ...]) -> list[in
             raise IrlxError(report("IRL006", option="--joints", value=text, cause=cause))
         if number not in found:
             found.append(number)
+    return found
+
+
+def told_numbers(wanted: Sequence[str | int], names: tuple[str, ...]) -> list[str]:
+    """Which joints are meant by numbers (from 1) where another number is in the name: '3 is joint_2'."""
+    found: list[str] = []
+    for text in dict.fromkeys(str(given).strip() for given in wanted):
+        if text in names or not text.isdecimal():
+            continue
+        name = names[int(text) - 1]
+        inside = [int(digits) for digits in re.findall(r"[0-9]+", name)]
+        if inside and int(text) not in inside:
+            found.append(f"{int(text)} is {name}")
     return found
 
 

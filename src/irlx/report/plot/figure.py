@@ -9,7 +9,6 @@ from textwrap import wrap
 from typing import Any
 
 import matplotlib as mpl
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.gridspec import GridSpec
@@ -17,17 +16,21 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from irlx.report.plot.curves import Curves
+from irlx.report.plot.move_marks import spaced_marks, told_marks
 from irlx.report.plot.panel import (
     ACTIVE,
     COLOURS,
+    DASHED,
+    HELD_AGAINST,
     INK,
     LIMIT,
-    MARGIN,
+    MARKS_APART,
     SLOW,
     WIDTHS,
     draw_joint,
     draw_track,
     finish,
+    seconds,
 )
 from irlx.report.plot.quantity import JOINT_QUANTITIES, QUANTITIES, Quantity
 from irlx.report.plot.styled_figure import STYLE, StyledFigure
@@ -40,6 +43,8 @@ _HEAD, _FOOT, _RIGHT, _GAP, _AXIS = 0.92, 0.44, 0.14, 0.13, 0.38
 """Room above, below and to the right of the diagrams, between rows, and for a time axis between; inches."""
 _LETTER = 0.075
 """Width of a letter, inches."""
+_NUMBERS_APART = 0.16
+"""Least distance between program lines above the diagrams, inches."""
 _TITLE = 0.18
 """Of the room above, what titles of columns take, inches."""
 _JOINTS_HEIGHT, _TALLEST, _LOWEST = 9.0, 1.3, 0.56
@@ -210,7 +215,7 @@ def _finish_page(
     for axes, title in zip(made[0], titles, strict=False):
         axes.set_title(title, fontsize=8.5, pad=14.0)
     for axes in made[0]:
-        _number_lines(axes, all_curves[-1], page.width / len(made[0]))
+        _number_lines(axes, all_curves[-1])
     height = page.height
     at = page.left / page.width
     figure.text(at, 1.0 - 0.2 / height, _heading(all_curves), fontsize=9.5, va="center", color=INK)
@@ -247,15 +252,15 @@ def _legend(all_curves: Sequence[Curves], made: list[list[Axes]]) -> list[Any]:
         styles = zip(all_curves, COLOURS, WIDTHS, strict=False)
         found += [Line2D([], [], color=colour, lw=w, label=curves.name) for curves, colour, w in styles]
     if "limit" in shown:
-        found.append(Line2D([], [], color=LIMIT, lw=0.9, ls=(0, (6, 3)), label="limit in force"))
-    for name in ("programmed", "margin"):
+        found.append(Line2D([], [], color=LIMIT, lw=0.9, ls=DASHED, label="limit in force"))
+    for name, (own, dashes) in HELD_AGAINST.items():
         if name in shown:
-            colour = MARGIN if len(all_curves) == 1 else INK
-            found.append(Line2D([], [], color=colour, lw=0.9, ls=(0, (3, 2)), label=name))
+            colour = own if len(all_curves) == 1 else INK
+            found.append(Line2D([], [], color=colour, lw=0.9, ls=dashes, label=name))
     if "active" in shown:
-        found.append(Patch(facecolor=ACTIVE, label="at a limit"))
+        found.append(Patch(facecolor=ACTIVE, label="at or near a limit"))
     if "active bar" in shown:
-        found.append(Line2D([], [], color=INK, lw=3.0, label="bar: at a limit"))
+        found.append(Line2D([], [], color=INK, lw=3.0, label="bar: at or near a limit"))
     if "slowed" in shown:
         found.append(Patch(facecolor=SLOW, label="slower than programmed"))
     if any(curves.moves for curves in all_curves):
@@ -265,15 +270,10 @@ def _legend(all_curves: Sequence[Curves], made: list[list[Axes]]) -> list[Any]:
     return found
 
 
-def _number_lines(axes: Axes, curves: Curves, width: float) -> None:
-    """Program lines above the marks of moves, as many as there is room for."""
-    low, high = axes.get_xlim()
-    room = (high - low) * 0.2 / width
-    before = -np.inf
-    for mark in curves.moves:
-        if mark.time - before < room:
-            continue
-        before = mark.time
+def _number_lines(axes: Axes, curves: Curves) -> None:
+    """Program lines above the marks of moves, as there is room; one for moves of the same line."""
+    marks = spaced_marks(curves.moves, seconds(axes, MARKS_APART))
+    for mark in told_marks(marks, seconds(axes, _NUMBERS_APART)):
         axes.annotate(
             str(mark.line),
             (mark.time, 1.0),

@@ -12,9 +12,10 @@ from irlx.blocks import MoveBlock, ReconfigureBlock
 from irlx.diagnostics import Diagnostic, Place, report
 from irlx.report.clearances import Clearances
 from irlx.report.curves import limits_over, outline_of_stream, tool_rates
-from irlx.report.plot.curves import Bounds, Curves, LimitSpan, MoveMark, Track
+from irlx.report.plot.curves import Bounds, Curves, MoveMark, Track
+from irlx.report.plot.limit_spans import limit_spans, time_of
 from irlx.report.plot.quantity import JOINT_QUANTITIES, Quantity
-from irlx.report.programmed_pace import ProgrammedPace, programmed_pace
+from irlx.report.programmed_pace import programmed_pace
 from irlx.robot.description import RobotDescription
 from irlx.scene.scene import Scene
 from irlx.streams.joint_stream import JointStream
@@ -23,13 +24,6 @@ from irlx.verifier.outline import Outline
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
-
-AT_POSITION = 1e-3
-"""Distance from a position limit, rad or m, up to which a joint counts as at it."""
-
-AT_RATE, AT_RATE_SLOWED = 0.98, 0.9
-"""Part of a speed or acceleration limit from which on a joint counts as at it; and where the tool is slower
-than programmed, since a plan keeps a reserve."""
 
 MOST_ROWS = 3000
 """Rows in which singular values and clearances are worked out; of longer streams every k-th."""
@@ -90,11 +84,7 @@ def _curves_of(
         units=tuple("mm" if unit == "m" else "deg" for unit in header.joint_units),
         values={q: _drawable(joint_rows[q.value][inside] * scale) for q in quantities},
         bounds={quantity: _bounds(stream, limits, quantity, scale, window) for quantity in quantities},
-        limit_spans=tuple(
-            span
-            for quantity in quantities
-            for span in _limit_spans(stream, limits, quantity, joint_rows[quantity.value], inside, pace)
-        ),
+        limit_spans=tuple(limit_spans(stream, limits, quantities, inside, pace.slowed)),
         moves=_moves(stream, window),
         slowed=tuple(_times(stream, pace.slowed, window)),
         tracks=tracks,
@@ -127,50 +117,12 @@ def _bounds(
     return Bounds(begin, end, lower, upper)
 
 
-def _limit_spans(
-    stream: JointStream,
-    limits: LimitsInForce,
-    quantity: Quantity,
-    values: Array,
-    inside: Integers,
-    pace: ProgrammedPace,
-) -> Iterator[LimitSpan]:
-    """Spans in which joints are at limits. A limit that leaves a joint no room is none that it comes to."""
-    if not inside.size:
-        return
-    first = int(inside[0])
-    lower, upper = limits.bounds(quantity.value, first, len(inside))
-    here = values[inside]
-    if quantity is Quantity.POSITION:
-        at = (here <= lower + AT_POSITION) | (here >= upper - AT_POSITION)
-    else:
-        part = np.full((len(inside), 1), AT_RATE)
-        for begin, end in pace.slowed:
-            part[(inside >= begin) & (inside <= end)] = AT_RATE_SLOWED
-        at = ((here <= part * lower) & (lower < 0.0)) | ((here >= part * upper) & (upper > 0.0))
-    at &= lower < upper
-    for joint in range(here.shape[1]):
-        for begin, end in _runs(at[:, joint]):
-            yield LimitSpan(quantity, joint, _time(stream, first + begin - 1), _time(stream, first + end))
-
-
-def _time(stream: JointStream, row: int) -> float:
-    return float(stream.t[max(row, 0)])
-
-
-def _runs(mask: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
-    """First and last index of every run of True."""
-    edges = np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8))
-    for first, beyond in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
-        yield int(first), int(beyond) - 1
-
-
 def _times(
     stream: JointStream, spans: tuple[tuple[int, int], ...], window: tuple[float, float]
 ) -> Iterator[tuple[float, float]]:
     """Spans of rows as times within a window; what a row tells holds in the tick before it."""
     for first, last in spans:
-        begin, end = max(_time(stream, first - 1), window[0]), min(_time(stream, last), window[1])
+        begin, end = max(time_of(stream, first - 1), window[0]), min(time_of(stream, last), window[1])
         if end > begin:
             yield begin, end
 

@@ -11,6 +11,7 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from irlx.report.plot.curves import Curves, Track
+from irlx.report.plot.move_marks import spaced_marks
 from irlx.report.plot.quantity import Quantity
 
 Array = NDArray[np.float64]
@@ -18,11 +19,20 @@ Array = NDArray[np.float64]
 COLOURS, WIDTHS = ("#8a8a8a", "#14566e"), (2.0, 1.0)
 """Of two streams: the first is the ground that the second is seen against. They differ in lightness, so that
 every eye and a print without colour tell them apart."""
-ONE, LIMIT, INK, MARGIN = "#14566e", "#a02040", "#222222", "#7a5200"
+ONE, LIMIT, INK = "#14566e", "#a02040", "#222222"
 ACTIVE, SLOW, GRID = "#f3d3da", "#f6e3b4", "#eceff3"
-_DASHED, _SHORT = (0, (6, 3)), (0, (3, 2))
+DASHED: Any = (0, (6, 3))
+HELD_AGAINST: dict[str, tuple[str, Any]] = {
+    "programmed": ("#7a5200", (0, (3, 2))),
+    "margin": ("#2e6b34", (0, (7, 2, 1.5, 2))),
+}
+"""Colour and dashes of what a curve of the whole robot is held against; of two streams their own colours."""
 MOST_POINTS = 12_000
 """Points of a curve from which on those are left out that no page shows."""
+MARKS_APART = 0.08
+"""Least distance between marks of moves, inches."""
+_LETTER, _ROOM = 0.056, 0.3
+"""Of the number of a limit: width of a letter, inches; the part of a diagram's height that it needs."""
 _REACH = 0.35
 """How far a limit may lie outside of a curve and still be drawn, as a part of the curve's range."""
 
@@ -82,12 +92,13 @@ def draw_track(axes: Axes, tracks: Sequence[Track | None], all_curves: Sequence[
         colour, width = style_of(number, count)
         style: Any = "steps-pre" if track.stepped else "default"
         apart = track.apart
+        held, dashes = HELD_AGAINST.get(track.bound_name, (INK, DASHED))
         if np.isfinite(apart).any():
             axes.plot(
                 *thinned(track.t, apart),
-                color=MARGIN if count == 1 else colour,
+                color=held if count == 1 else colour,
                 linewidth=0.9,
-                linestyle=_SHORT,
+                linestyle=dashes,
                 drawstyle=style,
                 gid=track.bound_name,
                 zorder=2.5,
@@ -113,13 +124,25 @@ def draw_track(axes: Axes, tracks: Sequence[Track | None], all_curves: Sequence[
 
 def finish(axes: Axes, all_curves: Sequence[Curves], span: tuple[float, float], height: float) -> None:
     """Marks of moves, grid and ticks, as many as a diagram of a `height` (inches) has room for."""
-    for mark in all_curves[-1].moves:
-        axes.axvline(mark.time, color="#555555", linewidth=0.6, linestyle=(0, (1, 2)), gid="move", zorder=1.5)
     axes.set_xlim(*span)
+    for mark in spaced_marks(all_curves[-1].moves, seconds(axes, MARKS_APART)):
+        axes.axvline(mark.time, color="#555555", linewidth=0.6, linestyle=(0, (1, 2)), gid="move", zorder=1.5)
     axes.grid(True, color=GRID, linewidth=0.5)
     axes.set_axisbelow(True)
     axes.yaxis.set_major_locator(MaxNLocator(max(2, min(5, int(height / 0.24))), steps=[1, 2, 2.5, 5, 10]))
     axes.xaxis.set_major_locator(MaxNLocator(7))
+
+
+def seconds(axes: Axes, inches: float) -> float:
+    """Time, s, that so much of the width of a diagram stands for."""
+    first, last = axes.get_xlim()
+    return (last - first) * inches / _width(axes)
+
+
+def _width(axes: Axes) -> float:
+    """Width of a diagram, inches."""
+    figure: Any = axes.figure
+    return float(axes.get_position().width * figure.get_figwidth())
 
 
 def _greatest(values: Array) -> float:
@@ -167,17 +190,43 @@ def _draw_limits(axes: Axes, all_curves: Sequence[Curves], quantity: Quantity, j
                 edge = values[np.isfinite(values)]
                 far[side] = f"{edge.max() if side == 0 else edge.min():.4g}".replace("-", "\N{MINUS SIGN}")
     for times, drawn, colour in lines:
-        axes.plot(times, drawn, color=colour, linewidth=0.9, linestyle=_DASHED, gid="limit", zorder=2.0)
+        axes.plot(times, drawn, color=colour, linewidth=0.9, linestyle=DASHED, gid="limit", zorder=2.0)
     room = 0.06 * (high - low)
     edges = [min(low, min(shown) - room), max(high, max(shown) + room)]
     axes.set_ylim(*edges)
-    for words, place, upright in ((far[0], 0.04, "bottom"), (far[1], 0.96, "top")):
+    shapes = [(curves.t, curves.values[quantity][:, joint]) for curves in all_curves]
+    for side, words in enumerate(far):
         if words:
-            arrow = "\N{DOWNWARDS ARROW}" if upright == "bottom" else "\N{UPWARDS ARROW}"
-            axes.text(
-                0.992, place, f"{arrow} {words}", transform=axes.transAxes, ha="right", va=upright,
-                fontsize=6.0, color=LIMIT, gid="far limit", zorder=1.2,
-            )  # fmt: skip
+            arrow = "\N{UPWARDS ARROW}" if side else "\N{DOWNWARDS ARROW}"
+            _write_far_limit(axes, f"{arrow} {words}", bool(side), shapes)
+
+
+def _write_far_limit(axes: Axes, words: str, upper: bool, curves: Sequence[tuple[Array, Array]]) -> None:
+    """The value of a limit that is not drawn, in the corner of its side, or halfway, where no curve is."""
+    wide = _LETTER * len(words) / _width(axes)
+    places = {1.0 - 0.5 * wide: "right", 0.5 * wide: "left", 0.5: "center"}
+    rooms = {side: _room(axes, (at - wide, at + wide), upper, curves) for at, side in places.items()}
+    side = next((side for side in rooms if rooms[side] >= _ROOM), max(rooms, key=rooms.__getitem__))
+    at, shift = {"right": (1.0, -4.0), "left": (0.0, 4.0), "center": (0.5, 0.0)}[side]
+    axes.annotate(
+        words, (at, float(upper)), xycoords="axes fraction", xytext=(shift, -4.0 if upper else 4.0),
+        textcoords="offset points", ha=side, va="top" if upper else "bottom", fontsize=6.0, color=LIMIT,
+        bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8, "alpha": 0.85},
+        gid="far limit", zorder=3.5,
+    )  # fmt: skip
+
+
+def _room(axes: Axes, part: tuple[float, float], upper: bool, curves: Sequence[tuple[Array, Array]]) -> float:
+    """Part of the height of a diagram that curves leave free at an edge, over a part of its width."""
+    low, high = axes.get_ylim()
+    first, last = min(float(t[0]) for t, _ in curves), max(float(t[-1]) for t, _ in curves)
+    begin, end = (first + (last - first) * at for at in part)
+    found = 1.0
+    for t, values in curves:
+        here = np.append(values[(t >= begin) & (t <= end)], np.interp([begin, end], t, values))
+        heights = (here - low) / (high - low)
+        found = min(found, float(np.min(1.0 - heights if upper else heights)))
+    return found
 
 
 def _same_line(one: tuple[Array, Array], other: tuple[Array, Array]) -> bool:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from textwrap import wrap
 
 import numpy as np
 from numpy.typing import NDArray
 from plotille import Canvas
 
-from irlx.report.plot.curves import Curves, Track
+from irlx.report.plot.curves import Curves, MoveMark, Track
+from irlx.report.plot.move_marks import spaced_marks
 from irlx.report.plot.quantity import JOINT_QUANTITIES, QUANTITIES
 
 Array = NDArray[np.float64]
@@ -46,7 +48,7 @@ def terminal_text(
     quantities = [quantity for quantity in JOINT_QUANTITIES if quantity in first.values] if joints else []
     columns = max(1, min(len(quantities), (width + _GAP) // (_LEAST + _GAP)))
     each = (width - _GAP * (columns - 1)) // columns
-    lines = [_heading(all_curves, pen)]
+    lines = _heading(all_curves, pen, width)
     for joint in joints:
         panels = [_joint_panel(all_curves, quantity, joint, each, pen) for quantity in quantities]
         for start in range(0, len(panels), columns):
@@ -64,12 +66,15 @@ def terminal_text(
     return "\n".join(line.rstrip() for line in lines)
 
 
-def _heading(all_curves: Sequence[Curves], pen: _Pen) -> str:
+def _heading(all_curves: Sequence[Curves], pen: _Pen, width: int) -> list[str]:
     first = all_curves[0]
-    if len(all_curves) > 1:
-        broken, solid = (pen.write(curves.name, _COLOURS[n]) for n, curves in enumerate(all_curves))
-        return f"{broken} (dashed) and {solid}, {first.robot}"
-    return f"{first.title}, {first.robot}" + ("" if first.complete else ", INCOMPLETE")
+    if len(all_curves) == 1:
+        words = f"{first.title}, {first.robot}" + ("" if first.complete else ", INCOMPLETE")
+        return wrap(words, width)
+    broken, solid = (pen.write(curves.name, _COLOURS[n]) for n, curves in enumerate(all_curves))
+    length = len(f"{first.name} (dashed) and {all_curves[1].name}, {first.robot}")
+    parts = [f"{broken} (dashed)", f"and {solid}, {first.robot}"]
+    return [" ".join(parts)] if length <= width else parts
 
 
 def _beside(panels: Sequence[list[tuple[str, int]]], each: int) -> list[str]:
@@ -253,7 +258,7 @@ def _axis(
         first, last = (round((at - times[0]) * scale) for at in (begin, end))
         for place in range(max(first, 0), min(last, width - 1) + 1):
             axis[place] = "\N{BOX DRAWINGS HEAVY HORIZONTAL}"
-    for mark in curves.moves:
+    for mark in _marks(width, times, curves):
         place = round((mark.time - times[0]) * scale)
         heavy = axis[place] == "\N{BOX DRAWINGS HEAVY HORIZONTAL}"
         axis[place] = (
@@ -264,18 +269,23 @@ def _axis(
     return "".join(axis)
 
 
+def _marks(width: int, times: tuple[float, float], curves: Curves) -> list[MoveMark]:
+    """Marks of moves, not closer than every other column."""
+    return spaced_marks(curves.moves, 1.5 * (times[1] - times[0]) / (width - 1))
+
+
 def _line_numbers(width: int, times: tuple[float, float], curves: Curves) -> str:
-    """Program lines below their marks, as many as there is room for, and the time at the end."""
+    """Program lines below their marks, one for moves of the same line, as there is room; last the time."""
     end = f"{times[1]:.4g} s"
     row = [" "] * width
     scale = (width - 1) / (times[1] - times[0])
-    free = 0
-    for mark in curves.moves:
+    free, told = 0, 0
+    for mark in _marks(width, times, curves):
         place, words = round((mark.time - times[0]) * scale), str(mark.line)
-        if place < free or place + len(words) > width - len(end) - 1:
+        if mark.line == told or place < free or place + len(words) > width - len(end) - 1:
             continue
         row[place : place + len(words)] = words
-        free = place + len(words) + 1
+        free, told = place + len(words) + 1, mark.line
     row[width - len(end) :] = end
     return "".join(row)
 
