@@ -107,8 +107,9 @@ def test_numbers_of_far_limits_stand_inside_and_clear_of_the_curve():
     limits = JointLimits.unlimited(2).with_pair("position", -bound, bound)
     made = DrawnStream(limits=limits, start=(0.0, 0.0))
     part = np.linspace(0.0, 1.0, 200)
-    # One rises to the right, one stands high at both ends.
-    made.move(np.column_stack([0.8 * part, 0.4 * np.cos(2.0 * np.pi * part)]))
+    # One stands low on the left and high on the right, one high at both ends.
+    waves = np.clip(2.0 * np.column_stack([-np.cos(np.pi * part), np.cos(2.0 * np.pi * part)]), -1.0, 1.0)
+    made.move(0.4 * waves)
     figure = draw_figure([curves_of(Subject(made.stream(), "a"), [Quantity.POSITION])[0]], [0, 1])
     renderer = FigureCanvasAgg(figure).get_renderer()
     for axes in figure.axes:
