@@ -103,14 +103,15 @@ def test_moves_and_slowed_tool(page, curves):
 
 
 def test_numbers_of_far_limits_stand_inside_and_clear_of_the_curve():
-    bound = np.array([3.0, 9.0])
-    limits = JointLimits.unlimited(2).with_pair("position", -bound, bound)
-    made = DrawnStream(limits=limits, start=(0.0, 0.0))
+    # On a page of many joints diagrams are low.
+    names = tuple(f"joint_{number}" for number in range(1, 11))
+    limits = JointLimits.unlimited(10).with_pair("position", np.full(10, -3.0), np.full(10, 3.0))
+    made = DrawnStream(names, ("rad",) * 10, limits, start=(0.0,) * 10)
     part = np.linspace(0.0, 1.0, 200)
-    # One stands low on the left and high on the right, one high at both ends.
+    # Low on the left and high on the right; high at both ends.
     waves = np.clip(2.0 * np.column_stack([-np.cos(np.pi * part), np.cos(2.0 * np.pi * part)]), -1.0, 1.0)
-    made.move(0.4 * waves)
-    figure = draw_figure([curves_of(Subject(made.stream(), "a"), [Quantity.POSITION])[0]], [0, 1])
+    made.move(np.tile(waves, 5))
+    figure = draw_figure([curves_of(Subject(made.stream(), "a"), [Quantity.POSITION])[0]], list(range(10)))
     renderer = FigureCanvasAgg(figure).get_renderer()
     for axes in figure.axes:
         numbers, (line,) = of(axes, "far limit"), of(axes, "curve 0")
