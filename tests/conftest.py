@@ -1,6 +1,7 @@
 """What holds for all tests."""
 
 import compileall
+import gc
 import os
 import signal
 import threading
@@ -22,3 +23,9 @@ def pytest_configure(config: pytest.Config) -> None:
     if not hasattr(config, "workerinput"):
         # Some hundred tests start irlx as a process; Python may have been told to write no bytecode.
         compileall.compile_dir(SOURCE, quiet=2)
+
+
+def pytest_collection_finish() -> None:
+    """Thousands of waiting tests are not looked through at every collection of garbage: a twentieth of it."""
+    gc.collect()
+    gc.freeze()

@@ -99,7 +99,8 @@ export class Run {
     return {
       ...event,
       frame,
-      line: event.line ?? (this.data.frames.line[frame] || null),
+      // What a module writes has no line in this text; the line in execution is another one.
+      line: event.line ?? (event.kind === "message" ? null : this.data.frames.line[frame] || null),
       lastFrame: Math.max(frame, this.frameOfTick(event.last)),
       from: event.first * this.data.tick_s,
       to: event.last * this.data.tick_s,

@@ -135,7 +135,9 @@ def test_of_a_run_that_ends_in_an_error_a_partial_page_appears(inside, folder, n
     (stop,) = (event for event in data["events"] if event["kind"] == "stop")
     assert stop["first"] == data["frames"]["tick"][-1] > 0
     assert stop["label"].startswith("ended by IRL5")
+    assert stop["line"] == 6
     assert any(stop["text"].startswith(line.split("\n")[0]) for line in data["diagnostics"])
+    assert any("\n  help: " in line for line in data["diagnostics"])
     # It names a tick that was planned: the page and the verdict say that the run did not come so far.
     end, planned = re.search(r"rests at (\S+) s, what was planned up to (\S+) s", stop["text"]).groups()
     assert float(end) == pytest.approx(stop["first"] * data["tick_s"])

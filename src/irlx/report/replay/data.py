@@ -55,9 +55,14 @@ def replay_json(replay: Replay, small: bool = False) -> tuple[bytes, tuple[Diagn
     listed, count = len(replay.found.records), replay.found.blocks
     if count > listed:
         lacking.append(report("IRL723", listed=f"{listed:,}", count=f"{count:,}"))
-    plain["diagnostics"] = [str(one) for one in (*replay.diagnostics, *lacking)]
+    plain["diagnostics"] = [_told(one) for one in (*replay.diagnostics, *lacking)]
     options = orjson.OPT_SERIALIZE_NUMPY | orjson.OPT_NON_STR_KEYS
     return orjson.dumps(plain, option=options), tuple(lacking)
+
+
+def _told(diagnostic: Diagnostic) -> str:
+    """Lines of a diagnostic: what, and what would help."""
+    return f"{diagnostic}\n  help: {diagnostic.help}" if diagnostic.help else str(diagnostic)
 
 
 def _head(replay: Replay, small: bool) -> Plain:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from math import degrees
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -37,7 +38,7 @@ def replay_events(
     events += [*_nearest(found), *_signals(header, found), *_waits(found)]
     events += [_message(message) for message in found.messages]
     last = max(found.rows - 1, 0)
-    events += [_stop(last, header.dt, error) for error in errors]
+    events += [_stop(last, header, error) for error in errors]
     return sorted(events, key=lambda event: (event["first"], event["last"]))
 
 
@@ -142,11 +143,16 @@ def _waits(found: Gathered) -> Iterator[Event]:
         yield open_one
 
 
-def _stop(last: int, dt: float, error: Diagnostic) -> Event:
-    words, time = str(error), unreached_time(error, last, dt)
+def _stop(last: int, header: StreamHeader, error: Diagnostic) -> Event:
+    words, time = str(error), unreached_time(error, last, header.dt)
     if time is not None:
-        words += f"; the robot rests at {last * dt:.6g} s, what was planned up to {time:.6g} s is left out"
-    return _event("stop", last, last, f"ended by {error.code}", words)
+        rest = last * header.dt
+        words += f"; the robot rests at {rest:.6g} s, what was planned up to {time:.6g} s is left out"
+    place = error.place
+    # The page has the text of the main program alone.
+    is_there = place is not None and Path(place.file).name == header.program_name
+    line = place.line if place is not None and is_there else None
+    return _event("stop", last, last, f"ended by {error.code}", words, line)
 
 
 def _message(message: Message) -> Event:
