@@ -44,7 +44,7 @@ export function clearanceSpec(run, theme) {
 /** A distance and what it leaves above the margin, m, in words. */
 function words(distance, margin) {
   const [away, room] = [distance * 1000, (distance - margin) * 1000];
-  const kept = `the margin of ${+(margin * 1000).toFixed(1)}`;
+  const kept = `margin ${+(margin * 1000).toFixed(1)}`;
   const side = room < 0 ? 'below' : 'above';
   return `${fixed(away, 1)} mm away, ${fixed(Math.abs(room), 1)} ${side} ${kept}`;
 }

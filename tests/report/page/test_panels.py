@@ -100,8 +100,8 @@ def test_pairs_far_apart_are_not_joined(shown):
     [
         (10, "nothing is watched"),
         (25, "nothing within reach of its influence"),
-        (40, "hand – wall\n50.0 mm away, 30.0 above the margin of 20"),
-        (60, "arm – cart\n15.0 mm away, 5.0 below the margin of 20"),
+        (40, "hand – wall\n50.0 mm away, 30.0 above margin 20"),
+        (60, "arm – cart\n15.0 mm away, 5.0 below margin 20"),
     ],
 )
 def test_what_the_distance_is_and_what_the_room(shown, frame, words):
