@@ -9,7 +9,7 @@ from irlx.diagnostics.extra import require_extra
 
 
 def test_what_is_installed_is_no_error():
-    require_extra("irlx some", "some", "json", "email.message")
+    assert require_extra("irlx some", "some", "json", "email.message") is None
 
 
 def test_a_missing_package_is_told_in_one_line(monkeypatch):

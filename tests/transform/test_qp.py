@@ -207,3 +207,46 @@ def test_whether_there_is_a_solution_does_not_depend_on_earlier_problems() -> No
     used = ProxQpSolver()
     used.solve(*random_problem(1, 2, "few"))
     assert used.solve(*problem).z is not None
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_guess_of_the_dual_solver_decides_nothing(kind: str) -> None:
+    """Held rows that are right, that are not, that depend on each other, or more than there are unknowns."""
+    rng = np.random.default_rng(KINDS.index(kind))
+    for seed in range(12):
+        r = 1 + seed % 5
+        rows, lower, upper = random_problem(seed, r, kind)
+        cold = DualSolver().solve(rows, lower, upper)
+        assert cold.z is not None
+        guesses = [cold.active, -cold.active, np.ones(len(rows), dtype=np.int8)]
+        guesses += [rng.choice([-1, 0, 0, 1], len(rows)).astype(np.int8) for _ in range(4)]
+        for guess in guesses:
+            warm = DualSolver().solve(rows, lower, upper, guess)
+            assert warm.z is not None, (seed, guess)
+            size = max(
+                float(np.max(np.abs(cold.z))),
+                float(np.max(np.abs(upper - lower), initial=0.0, where=np.isfinite(upper - lower))),
+            )
+            np.testing.assert_allclose(
+                warm.z, cold.z, atol=1e-8 * max(size, 1e-12), err_msg=f"{seed}, {guess}"
+            )
+            assert_optimal(rows, lower, upper, warm, f"{kind} {seed} {guess}")
+
+
+def test_a_guess_of_the_dual_solver_makes_nothing_possible() -> None:
+    rows = np.array([[1.0, 0.0], [1.0, 1e-3], [0.0, 1.0]])
+    lower, upper = np.array([1.0, -np.inf, -0.1]), np.array([np.inf, 0.5, 0.1])
+    for guess in np.array([[0, 0, 0], [-1, 0, 0], [0, 1, 0], [-1, 1, 0], [-1, 1, 1]], dtype=np.int8):
+        assert DualSolver().solve(rows, lower, upper, guess).z is None
+
+
+def test_a_right_guess_saves_the_dual_solver_all_steps(monkeypatch) -> None:
+    rows, lower, upper = random_problem(3, 5, "many")
+    active = DualSolver().solve(rows, lower, upper).active
+    assert np.count_nonzero(active) >= 2
+
+    def never(*arguments: object) -> bool:
+        raise AssertionError("a row was taken in")
+
+    monkeypatch.setattr("irlx.transform.qp.dual._Iteration._take_in", never)
+    np.testing.assert_array_equal(DualSolver().solve(rows, lower, upper, active).active, active)

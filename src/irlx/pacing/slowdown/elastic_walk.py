@@ -230,7 +230,11 @@ def _many_unknowns(
     sides: SideRows | None,
     guess: NDArray[np.int8] | None,
 ) -> tuple[tuple[Array, float] | None, NDArray[np.int8]]:
-    """With e = scale (eps + offset) the price is half a square, and all is a least-norm problem in (z, e)."""
+    """Minimise 1/2 |z|^2 + price (eps + eps^2 / 2000), D = target + rows z; D and eps, and the rows held.
+
+    With e = scale (eps + offset) the price is half a square, and all is a least-norm problem in (z, e).
+    `sides` are inequalities of z that are kept whatever the price; `guess` the rows held in a problem alike.
+    """
     count, unknowns = rows.shape
     scale, offset = np.sqrt(_CURVATURE * price), 1.0 / _CURVATURE
     above, below = np.flatnonzero(np.isfinite(room.up)), np.flatnonzero(np.isfinite(room.down))
