@@ -156,6 +156,11 @@ class Kinematics:
         """The frame that moves with a link in which poses of the tool are told, None for the world."""
         return None
 
+    @property
+    def end_frames(self) -> tuple[int, int]:
+        """Numbers in `model.frames` of the tool and of the frame in which its poses are told."""
+        return self._tip_frame, 0
+
     @cached_property
     def of_pose(self) -> Kinematics:
         """The same robot for motions that demand poses: constraints that the pose keeps or breaks by itself

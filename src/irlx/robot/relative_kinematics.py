@@ -45,6 +45,11 @@ class RelativeKinematics(Kinematics):
         """The frame F."""
         return self._named
 
+    @property
+    def end_frames(self) -> tuple[int, int]:
+        """Numbers in `model.frames` of the tool and of the frame F."""
+        return self._tip_frame, self._seen_by
+
     @cached_property
     def of_pose(self) -> Kinematics:
         """The same robot seen from the same frame, without constraints that its pose there implies."""
