@@ -38,7 +38,7 @@ VAR
 BEGIN
   FOR lap := 1 TO 10 DO
     MOVE_INC LIN POSITION(150, 200, -187.5);
-    MOVE_INC CIRCLE POSITION(57, 57, 0), POSITION(0, 114, 0) ANGLE := 360;
+    MOVE_INC CIRCLE POSITION(58, 58, 0), POSITION(0, 116, 0) ANGLE := 360;
     MOVE_INC LIN POSITION(-150, -200, 187.5);
     MOVE PTP aside SPEED_PTP := 60;
     MOVE PTP ready SPEED_PTP := 60;
@@ -148,7 +148,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if asked.json:
         print(json.dumps(found, indent=2))
         return
-    print(f"{found['date']}, {found['machine']}; {found['rounds']} rounds.\n")
+    rounds = f"{found['rounds']} round{'s' if found['rounds'] > 1 else ''}"
+    print(f"{found['date']}, {found['machine']}; {rounds}.\n")
     print(piped(rows(found)) if asked.markdown else aligned(rows(found)))
 
 
