@@ -5,7 +5,7 @@
 A Panda leads its tool along a line, round a circle and back, at 1 kHz and at 250 Hz. Each library follows
 the same poses with the same URDF, and each tick goes on until the pose is met to 1e-6 m and 1e-6 rad, with
 limits of joint position and speed and the smallest motion; irlx runs the program. Each is a process of its
-own in one of two virtual environments, made where they are missing, by default in the user's cache (1.5 GB),
+own in one of two virtual environments, made where they are missing, by default in the user's cache (2 GB),
 and all take turns within a round. Given are the least and the median processor time of a tick over the
 rounds, and the worst error of all ticks of all rounds by the kinematics of `beside/forward_kinematics.py`.
 Ends with exit code 1 where a library does not converge, or anything is off by more than 1e-6 or breaks a
