@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from irlx.blocks import Blend, MotionLaw, MoveBlock, MoveKind
 from irlx.motion.corner import LEAST_BLEND, REVERSAL, Lost
 from irlx.pacing.conditions import broken_condition
+from irlx.pacing.demand import Demands
 from irlx.pacing.row_check import broken_on_the_way
 from irlx.pacing.rows import MotionRows, PathPart
 from irlx.pacing.transition import transition
@@ -296,8 +297,7 @@ def shifted(rows: MotionRows, ticks: int) -> MotionRows:
     """The same rows so many ticks later."""
     path = rows.path
     if path is not None:
-        demands = tuple(demand._replace(tick=demand.tick + ticks) for demand in path.demands)
-        path = replace(path, demands=demands)
+        path = replace(path, demands=path.demands.later(ticks))
     return replace(rows, first_tick=rows.first_tick + ticks, path=path)
 
 
@@ -375,11 +375,10 @@ def _extended(rows: MotionRows, poses: tuple[Array, ...], behind: bool) -> Motio
 def _path_extended(path: PathPart, count: int, behind: bool) -> PathPart:
     """The part of a path of rows to which so many were added: their demand is that of the row beside them."""
     if behind or not count:
-        return replace(path, demands=(*path.demands, *path.demands[-1:] * count))
-    first = path.demands[:1] * count
-    demands = tuple(demand._replace(tick=demand.tick + k - count) for k, demand in enumerate(first))
+        return replace(path, demands=Demands.joined(path.demands, path.demands.repeated(-1, count)))
+    demands = path.demands.repeated(0, count).later(np.arange(-count, 0))
     slowings = tuple(
         replace(found, first_row=found.first_row + count, last_row=found.last_row + count)
         for found in path.slowings
     )
-    return replace(path, demands=(*demands, *path.demands), slowings=slowings)
+    return replace(path, demands=Demands.joined(demands, path.demands), slowings=slowings)

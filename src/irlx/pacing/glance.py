@@ -21,7 +21,7 @@ from scipy.linalg.lapack import dposv
 from irlx.motion.chain_path import ChainPath
 from irlx.motion.pose_path import PosePath, Poses
 from irlx.motion.time_law import TimeLaw
-from irlx.pacing.demand import Demand
+from irlx.pacing.demand import Demands
 from irlx.pacing.posture_term import PostureTerm
 from irlx.pacing.slowdown.all_at_once import LONGEST, references, settle
 from irlx.pacing.slowdown.model import Model
@@ -54,7 +54,7 @@ class Glance:
     """Postures q (M, n) of rows at path parameters rising to the end, and the demands (M) that they meet."""
 
     q: Array
-    demands: tuple[Demand, ...]
+    demands: Demands
 
 
 @dataclass(frozen=True)
@@ -221,8 +221,8 @@ def _is_clear(motion: Glanced, model: Model, found: Glance) -> bool:
     """Whether the rows come too near to nothing."""
     if model.clearance is None:
         return True
-    ticks = np.array([demand.tick for demand in found.demands]) - motion.first_tick + 1
-    return model.clearance.first_short(found.q, motion.start, motion.dt * ticks) is None
+    elapsed = motion.dt * np.asarray(found.demands.tick - motion.first_tick + 1, dtype=np.float64)
+    return model.clearance.first_short(found.q, motion.start, elapsed) is None
 
 
 def _within(values: Array, lower: Array, upper: Array, share: float) -> bool:
@@ -248,10 +248,9 @@ def _joined(values: Array) -> Array:
     return np.asarray(values[:, 1:].reshape(-1, values.shape[2]))
 
 
-def _demands(motion: Glanced, s: Array, poses: Poses) -> tuple[Demand, ...]:
+def _demands(motion: Glanced, s: Array, poses: Poses) -> Demands:
     """Demands at path parameters; of their twists, which a dry run has no use for, nothing is said."""
     ticks = np.clip(np.ceil(motion.law.times_at(s) / motion.dt - 1e-9).astype(int), 1, motion.ticks)
     ticks[-1] = motion.ticks
-    unknown = np.full(6, np.nan)
-    columns = (ticks + motion.first_tick - 1).tolist(), s.tolist(), poses.position, poses.rotation
-    return tuple(Demand(*row, unknown) for row in zip(*columns, strict=True))
+    unknown = np.full((len(s), 6), np.nan)
+    return Demands(ticks + motion.first_tick - 1, s, poses.position, poses.rotation, unknown)

@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 
 from irlx.blocks import MoveBlock, PoseTarget
 from irlx.diagnostics import Place, report
-from irlx.pacing.demand import Demand
+from irlx.pacing.demand import Demands
 from irlx.pacing.errors import PacingError
 from irlx.pacing.situation import Situation
 from irlx.promises import FOLLOWED_TURN, PATH_ORIENTATION, PATH_POSITION
@@ -70,7 +70,7 @@ def _rotation(quaternion: tuple[float, float, float, float]) -> Array:
 def check_on_path(
     asked: Sequence[AskedPose],
     q: Array,
-    demands: Sequence[Demand],
+    demands: Demands,
     around: tuple[Kinematics, JointLimits, NDArray[np.bool_]],
 ) -> None:
     """Raise PacingError, IRL437, for a target that the rows q (N, n) of a motion do not meet in all.
@@ -81,11 +81,9 @@ def check_on_path(
     kinematics, limits, free = around
     if not kinematics.following.size or not asked:
         return
-    positions = np.array([demand.position for demand in demands])
-    rotations = np.array([demand.rotation for demand in demands])
     for pose in asked:
-        turns = np.linalg.norm(rotations - pose.rotation, axis=(1, 2))
-        away = np.linalg.norm(positions - pose.position, axis=1) / kinematics.description.reach + turns
+        turns = np.linalg.norm(demands.rotation - pose.rotation, axis=(1, 2))
+        away = np.linalg.norm(demands.position - pose.position, axis=1) / kinematics.description.reach + turns
         row = int(np.argmin(away))
         posture = q[row]
         if away[row] > _SAME:

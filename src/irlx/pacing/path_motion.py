@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from irlx.diagnostics import IrlxError
 from irlx.motion.plan_path import PlannedPath
 from irlx.pacing.clock import Clock, programmed_clock
-from irlx.pacing.demand import Demand, DemandModifier, demands
+from irlx.pacing.demand import DemandModifier, Demands, demands
 from irlx.pacing.posture_term import PostureTerm
 from irlx.pacing.resolution import EVERY_TICK, Resolution
 from irlx.pacing.row_check import BrokenBound, broken_bound
@@ -21,7 +21,7 @@ from irlx.pacing.slowing import Slowing, slowings
 from irlx.pacing.swinging import swings
 from irlx.pacing.touching import touching
 from irlx.pacing.walk import Halt, Walk, walk
-from irlx.pacing.watch import Watch, watched
+from irlx.pacing.watch import Watch
 from irlx.transform.clearance import Closest
 from irlx.transform.step_bounds import BoundSource, StepLimiter
 from irlx.transform.tick import TickSolver
@@ -40,7 +40,7 @@ class PacedPath:
 
     q: Array
     active: NDArray[np.int8]
-    demands: tuple[Demand, ...]
+    demands: Demands
     iterations: int
     term: PostureTerm
     slowings: tuple[Slowing, ...] = ()
@@ -75,9 +75,9 @@ class PathMotion:
     resolution: Resolution = EVERY_TICK
     watch: Watch | None = None
 
-    def demands_of(self, clock: Clock) -> list[Demand]:
+    def demands_of(self, clock: Clock) -> Demands:
         """Demands of the ticks of a clock, modifiers applied."""
-        return list(demands(self.plan.path, clock, self.first_tick, self.modifiers))
+        return demands(self.plan.path, clock, self.first_tick, self.modifiers)
 
 
 def pace_path(motion: PathMotion, model: Model, solver: TickSolver) -> PacedPath | Failure:
@@ -161,17 +161,18 @@ def _walked(
     ticks = motion.plan.ticks
     clock = programmed_clock(motion.plan.law, ticks, motion.dt, motion.resolution.rows_of(ticks))
     asked = motion.demands_of(clock)
-    advance = dict(zip((demand.tick for demand in asked), np.diff(clock.s, prepend=0.0), strict=True))
+    s, advance = asked.s.tolist(), np.diff(clock.s, prepend=0.0).tolist()
     dt = motion.dt * clock.ticks_a_row
     walked = walk(
         solver,
         StepLimiter(model.limits, dt),
-        lambda demand: motion.term.at(demand.s, float(advance[demand.tick])),
+        lambda row: motion.term.at(s[row], advance[row]),
         model.free,
         motion.start,
-        watched(asked, motion.watch),
+        asked,
         thorough,
         model.clearance,
+        None if motion.watch is None else motion.watch.ticked,
     )
     if walked.halt is not None:
         return walked, None
@@ -201,7 +202,7 @@ def _task(motion: PathMotion, undisturbed: Callable[[Array], Array] | None) -> M
 def _planned(motion: PathMotion, model: Model, found: PlannedMotion) -> PacedPath:
     clock = found.timed.clock
     rates = motion.plan.programmed.rates_at(clock.s)
-    dt = motion.dt * (found.demands[-1].tick + 1 - motion.first_tick) / len(found.q)
+    dt = motion.dt * (int(found.demands.tick[-1]) + 1 - motion.first_tick) / len(found.q)
     return PacedPath(
         found.q,
         touching(motion.start, found.q, model.limits, dt),

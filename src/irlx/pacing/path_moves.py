@@ -15,7 +15,6 @@ from irlx.motion.plan_chain import Leg, PlannedChain, lost_blend, plan_chain
 from irlx.motion.plan_circle import circle_path
 from irlx.motion.whole_ticks import ticks_of_move
 from irlx.pacing.conditions import broken_condition, check_implied, check_targets
-from irlx.pacing.demand import Demand
 from irlx.pacing.drawn_to import check_postures, postures_asked, term_of, warn_of_posture_left
 from irlx.pacing.errors import PacingError
 from irlx.pacing.impossible import Surroundings, explain_failure, goal_shortfall, slower_than_allowed
@@ -185,7 +184,7 @@ def _rows(situation: Situation, block: MoveBlock, plan: PlannedChain, paced: Pac
         held(position_error),
         held(orientation_error),
         np.vstack([paced.active, np.zeros_like(paced.active[-1:])]),
-        held(np.array([demand.s for demand in paced.demands])),
+        held(paced.demands.s),
         plan.path.length,
         paced.iterations,
         path=PathPart(
@@ -221,17 +220,13 @@ def _tool(situation: Situation, paced: PacedPath) -> tuple[Array, Array, Array, 
     """
     kinematics = situation.kinematics
     in_world = kinematics.world is kinematics
+    asked = paced.demands.rotation, paced.demands.position
     if situation.setup.resolution.is_coarse:
         nothing = np.zeros(len(paced.q))
-        poses = _wanted(paced.demands) if in_world else kinematics.world.tool_poses(paced.q)
-        return nothing, nothing, poses[1], poses[0]
+        rotation, position = asked if in_world else kinematics.world.tool_poses(paced.q)
+        return nothing, nothing, position, rotation
     rotation, position = kinematics.tool_poses(paced.q)
-    distance, angle = kinematics.errors(paced.q, _wanted(paced.demands))
+    distance, angle = kinematics.errors(paced.q, asked)
     if not in_world:
         rotation, position = kinematics.world.tool_poses(paced.q)
     return distance, angle, position, rotation
-
-
-def _wanted(asked: Sequence[Demand]) -> tuple[Array, Array]:
-    rotation = np.array([demand.rotation for demand in asked])
-    return rotation, np.array([demand.position for demand in asked])

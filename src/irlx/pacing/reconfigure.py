@@ -13,7 +13,7 @@ from irlx.diagnostics import Place, report
 from irlx.motion.plan_joint_line import RAMP_TIME
 from irlx.motion.whole_ticks import ticks_of_move
 from irlx.pacing.clock import Clock
-from irlx.pacing.demand import Demand
+from irlx.pacing.demand import Demand, Demands
 from irlx.pacing.errors import PacingError
 from irlx.pacing.impossible import explain_broken_row
 from irlx.pacing.resolution import EVERY_TICK, Resolution
@@ -99,12 +99,12 @@ def _ticking(model: Model, q: Array, dt: float, place: Place, resolution: Resolu
     """Ticks at which the tool keeps the pose of posture q (n,)."""
     rotation, position = model.kinematics.tool_pose(q)
 
-    def demands_of(clock: Clock) -> list[Demand]:
+    def demands_of(clock: Clock) -> Demands:
         ticks = (round((k + 1) * clock.ticks_a_row) for k in range(len(clock)))
-        return [
+        return Demands.of(
             Demand(tick, float(s), position, rotation, np.zeros(6))
             for tick, s in zip(ticks, clock.s, strict=True)
-        ]
+        )
 
     return Ticking(dt, lambda duration: ticks_of_move(duration, dt, place), demands_of, resolution)
 
@@ -145,8 +145,8 @@ def _motion_rows(
     model: Model, block: ReconfigureBlock, q: Array, found: PlannedMotion, dt: float, first_tick: int
 ) -> MotionRows:
     """Rows with their hold tick, the tool measured against its pose at the start."""
-    kinematics, rows, ticks = model.kinematics, found.q, found.demands[-1].tick
-    way = np.array([demand.s for demand in found.demands])
+    kinematics, rows, ticks = model.kinematics, found.q, int(found.demands.tick[-1])
+    way = found.demands.s
     held = np.vstack([rows, rows[-1:]])
     touched = touching(q, rows, model.limits, dt * ticks / len(rows))
     start_rotation, start_position = kinematics.tool_pose(q)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from irlx.blocks import MoveBlock, PauseBlock, ReconfigureBlock, WaitBlock
 from irlx.motion.time_law import TimeLaw
-from irlx.pacing.demand import Demand
+from irlx.pacing.demand import Demands
 from irlx.pacing.freed import Freed
 from irlx.pacing.nearest_rows import NearestRows
 from irlx.pacing.posture_term import PostureTerm
@@ -34,7 +34,7 @@ class PathPart:
     `clearance` is what the motion, whose first tick is `first_tick`, keeps clear.
     """
 
-    demands: tuple[Demand, ...]
+    demands: Demands
     term: PostureTerm
     law: TimeLaw
     is_turn: bool

@@ -8,20 +8,20 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.pacing.demand import Demand
+from irlx.pacing.demand import Demand, Demands
 from irlx.transform.clearance import Clearance, Closest
 from irlx.transform.criteria.criterion import Criterion
+from irlx.transform.free_run import free_run
+from irlx.transform.seeds import Seeds
 from irlx.transform.step_bounds import StepBounds, StepLimiter
 from irlx.transform.tick import TickSolution, TickSolver
 from irlx.transform.tick_problem import TickProblem
 
 Array = NDArray[np.float64]
 
-_CONTINUATION = (-1.0, 4.0, -6.0, 4.0)
-"""Weights of the last four steps, the oldest first."""
-
-_CONTINUATION_AT = [np.roll(_CONTINUATION, k) for k in range(len(_CONTINUATION))]
-"""The same for a ring of steps in which the oldest one stands at place k."""
+_AHEAD = 128
+_LEAST_AHEAD = 4
+_LONGEST_WAIT = 64
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Walk:
 
     q: Array
     active: NDArray[np.int8]
-    demands: tuple[Demand, ...]
+    demands: Demands
     iterations: int
     halt: Halt | None
     closest: tuple[Closest, ...] | None = None
@@ -52,60 +52,140 @@ class Walk:
 def walk(
     solver: TickSolver,
     limiter: StepLimiter,
-    criterion_of: Callable[[Demand], Criterion],
+    criterion_of: Callable[[int], Criterion],
     free: NDArray[np.bool_],
     start: Array,
     demands: Iterable[Demand],
     thorough: bool = True,
     clearance: Clearance | None = None,
+    ticked: Callable[[int], None] | None = None,
 ) -> Walk:
     """Walk from rest at posture `start` (n,) through the demands, one tick each.
 
-    `limiter` holds the limits in force, `criterion_of` gives the criterion of a tick, `free` (n,) is True
+    `limiter` holds the limits in force, `criterion_of` gives the criterion of a row, `free` (n,) is True
     for the joints that are not frozen, `thorough` is that of `TickSolver.solve`, `clearance` what is kept
-    clear of.
+    clear of, `ticked` is told the tick of the demand that is worked on. Where nothing stands against them,
+    ticks are solved many at a time, see `irlx.transform.free_run`: their rows are the same.
     """
-    q, speed = start, np.zeros_like(start)
-    joints = start.size
-    seeds = _Seeds(joints)
-    unheld = np.zeros(joints, dtype=np.int8)
-    rows: list[Array] = []
-    flags: list[NDArray[np.int8]] = []
-    done: list[Demand] = []
-    closest: list[Closest] = []
-    iterations = 0
-    halt: Halt | None = None
-    for demand in demands:
-        bounds = limiter.bounds(q, speed)
-        target = solver.kinematics.target(demand.rotation, demand.position)
-        elapsed = len(rows) * limiter.dt
+    walker = _Walker(solver, limiter, criterion_of, free, start, Demands.of(demands), thorough, clearance)
+    halt, haste = None, _Haste(solver.runs_free and not (clearance is not None and clearance.moves))
+    while walker.row < len(walker.demands) and halt is None:
+        if ticked is not None:
+            ticked(int(walker.demands.tick[walker.row]))
+        ahead = haste.ahead if walker.row else 0
+        haste.went(walker.run(ahead) if ahead else 0)
+        if walker.row < len(walker.demands):
+            halt = walker.tick()
+    return walker.walked(halt)
+
+
+class _Haste:
+    """How many ticks a walk runs ahead: more as long as that goes well, none for a while where not."""
+
+    def __init__(self, able: bool) -> None:
+        self._able = able
+        self._size, self._wait, self._left = _LEAST_AHEAD, 1, 0
+
+    @property
+    def ahead(self) -> int:
+        """Ticks to be tried next, 0 for none."""
+        return self._size if self._able and self._left == 0 else 0
+
+    def went(self, done: int) -> None:
+        """Note how many ticks were done, 0 as well where none were tried."""
+        if self._left > 0:
+            self._left -= 1
+        elif done == 0:
+            self._size, self._left = _LEAST_AHEAD, self._wait
+            self._wait = min(2 * self._wait, _LONGEST_WAIT)
+        else:
+            whole = done >= self._size
+            self._size, self._wait = min(2 * self._size, _AHEAD) if whole else _LEAST_AHEAD, 1
+
+
+class _Walker:
+    """A walk under way, at rest before its first row."""
+
+    def __init__(
+        self,
+        solver: TickSolver,
+        limiter: StepLimiter,
+        criterion_of: Callable[[int], Criterion],
+        free: NDArray[np.bool_],
+        start: Array,
+        demands: Demands,
+        thorough: bool,
+        clearance: Clearance | None,
+    ) -> None:
+        self._solver, self._limiter, self._criterion_of, self._free = solver, limiter, criterion_of, free
+        self._thorough, self._clearance = thorough, clearance
+        self.demands = demands
+        self.row, self._iterations = 0, 0
+        self._at, self._speed, self._seeds = start, np.zeros_like(start), Seeds(start.size)
+        self._q = np.empty((len(demands), start.size))
+        self._active = np.zeros((len(demands), start.size), dtype=np.int8)
+        self._closest: list[Closest] = [None] * len(demands)
+
+    def run(self, ahead: int) -> int:
+        """Do as many of the next ticks as nothing stands against; how many that were."""
+        part = slice(self.row, self.row + ahead)
+        poses, seeds = (self.demands.rotation[part], self.demands.position[part]), self._seeds.copy()
+        first, solver = self.row, self._solver
+        criteria = map(self._criterion_of, range(first, first + len(poses[0])))
+        plain = solver.undisturbed(self._free)
+        found = free_run(solver.kinematics, plain, self._at, poses, criteria, seeds)
+        count = self._limiter.kept(self._at, self._speed, found.q) if len(found.q) else 0
+        if count and self._clearance is not None:
+            # A tick needs no look where everything is far at both its ends.
+            count = max(self._clearance.far_rows(np.vstack([self._at, found.q[:count]])) - 1, 0)
+        if count == 0:
+            return 0
+        rows = found.q[:count]
+        steps = np.diff(rows, axis=0, prepend=self._at[None])
+        if count == len(found.q):
+            self._seeds = seeds
+        else:
+            for step in steps[-4:]:
+                self._seeds.took(step)
+        self._q[first : first + count] = rows
+        self._iterations += int(np.sum(found.iterations[:count]))
+        self._at, self._speed = self._q[first + count - 1], steps[-1] / self._limiter.dt
+        self.row += count
+        return count
+
+    def tick(self) -> Halt | None:
+        """Do the next tick with all precautions; why it cannot be done, if so."""
+        limiter, clearance, row, q = self._limiter, self._clearance, self.row, self._at
+        demand = self.demands[row]
+        bounds = limiter.bounds(q, self._speed)
+        target = self._solver.kinematics.target(demand.rotation, demand.position)
+        elapsed = row * limiter.dt
         keeping = clearance.tick(q, limiter.dt, elapsed) if clearance is not None else None
-        problem = TickProblem(target, q, bounds, criterion_of(demand), free, keeping)
-        solution, seen = _solved(solver, problem, seeds.next(), thorough, clearance, (elapsed, limiter.dt))
-        iterations += solution.iterations
+        problem = TickProblem(target, q, bounds, self._criterion_of(row), self._free, keeping)
+        seed, span = self._seeds.next(), (elapsed, limiter.dt)
+        solution, seen = _solved(self._solver, problem, seed, self._thorough, clearance, span)
+        self._iterations += solution.iterations
         if not solution.solved:
-            halt = Halt(demand, bounds, solution)
-            break
+            return Halt(demand, bounds, solution)
         # q + (limit - q) may lie one bit beyond the limit.
         reached = limiter.into_positions(solution.q)
         step = reached - q
-        seeds.took(step)
-        speed = step / limiter.dt
-        q = reached
-        rows.append(q)
-        if clearance is not None:
-            closest.append(clearance.closest(q, elapsed + limiter.dt) if seen else None)
-        held = np.count_nonzero(solution.active) > 0
-        flags.append(active_flags(solution.active, bounds) if held else unheld)
-        done.append(demand)
-    return Walk(
-        np.array(rows).reshape(-1, joints),
-        np.array(flags, dtype=np.int8).reshape(-1, joints),
-        tuple(done),
-        iterations,
-        halt,
-        None if clearance is None else tuple(closest),
-    )
+        self._seeds.took(step)
+        self._speed, self._at = step / limiter.dt, reached
+        self._q[row] = reached
+        if clearance is not None and seen:
+            self._closest[row] = clearance.closest(reached, elapsed + limiter.dt)
+        if np.count_nonzero(solution.active):
+            self._active[row] = active_flags(solution.active, bounds)
+        self.row += 1
+        return None
+
+    def walked(self, halt: Halt | None) -> Walk:
+        """What the walk has come to."""
+        done = slice(0, self.row)
+        closest = None if self._clearance is None else tuple(self._closest[done])
+        rows = self._q[done], self._active[done]
+        return Walk(*rows, self.demands[done], self._iterations, halt, closest)
 
 
 def _solved(
@@ -130,26 +210,6 @@ def _solved(
         return solution, True
     watched = clearance.watched_tick(problem.q, span[1], span[0])
     return solver.solve(problem._replace(clearance=watched), seed, thorough), True
-
-
-class _Seeds:
-    """Continues the last steps of a walk as a cubic in time: where Newton's method begins a tick.
-
-    S_k = 4 S_(k-1) - 6 S_(k-2) + 4 S_(k-3) - S_(k-4); a walk begins at rest.
-    """
-
-    def __init__(self, joints: int) -> None:
-        self._last = np.zeros((len(_CONTINUATION), joints))
-        self._count = 0
-
-    def next(self) -> Array:
-        """Step (n,) that continues the last ones."""
-        return np.asarray(_CONTINUATION_AT[self._count % len(_CONTINUATION)].dot(self._last))
-
-    def took(self, step: Array) -> None:
-        """Note the step (n,) of a tick."""
-        self._last[self._count % len(_CONTINUATION)] = step
-        self._count += 1
 
 
 def active_flags(active: NDArray[np.int8], bounds: StepBounds) -> NDArray[np.int8]:

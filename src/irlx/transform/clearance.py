@@ -101,6 +101,11 @@ class Clearance:
         self._start: Array = np.zeros(0)
         self._start_distance: Array = np.zeros(0)
 
+    @property
+    def moves(self) -> bool:
+        """Whether any obstacle moves by itself."""
+        return self.distances.moves
+
     def beginning(self, time: float) -> Clearance:
         """The same for a motion that begins at a `time` (s)."""
         return Clearance(self.distances, time)
@@ -247,16 +252,22 @@ class Clearance:
 
     def untouched(self, q: Array) -> bool:
         """Whether all pairs are beyond their influence at all postures q (N, n), and none of them moves."""
+        return not self.distances.moves and self.far_rows(q) == len(q)
+
+    def far_rows(self, q: Array) -> int:
+        """At how many of the first of postures q (N, n) all pairs are beyond their influence.
+
+        Obstacles are where they were at the last look.
+        """
         distances = self.distances
-        if distances.moves:
-            return False
         reach = distances.influence
 
         def found(row: int) -> TooNear | None:
             near = distances.near(q[row], reach)
             return TooNear(int(near.pairs[0]), float(near.distance[0]), 0.0) if len(near.pairs) else None
 
-        return self._first(q, reach, found) is None
+        first = self._first(q, reach, found)
+        return len(q) if first is None else first[0]
 
     def nearest(self, q: Array, start: Array, reserve: float = 0.0, elapsed: float = 0.0) -> TooNear | None:
         """The pair with the least room above what it must keep at q (n,), of those within their influence.

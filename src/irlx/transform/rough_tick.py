@@ -40,6 +40,8 @@ _LEFT = 1e-8
 class RoughTickSolver(TickSolver):
     """Solves ticks to `SETTLED`. Holds which bounds the last tick met, as a guess that decides nothing."""
 
+    runs_free = False
+
     def __init__(self, kinematics: Kinematics, qp: QpSolver) -> None:
         super().__init__(kinematics, qp)
         self._side: Sides = np.zeros(kinematics.joints, dtype=np.int8)

@@ -7,9 +7,22 @@ criterion's curvature and not the path's.
 
 from __future__ import annotations
 
-from math import inf
+from math import inf, sqrt
 
-from irlx.transform.precision import MOST_CALM_STEPS, ROUNDING_STEP, SETTLED_ERROR, SETTLED_STEP
+import numpy as np
+from numpy.typing import NDArray
+
+from irlx.transform.precision import (
+    MOST_CALM_STEPS,
+    ORIENTATION_TOLERANCE,
+    POSITION_TOLERANCE,
+    ROUNDING_STEP,
+    SETTLED_ERROR,
+    SETTLED_STEP,
+)
+
+SURELY_MET = min(POSITION_TOLERANCE, ORIENTATION_TOLERANCE) ** 2
+"""Square of what is left of a demand that is surely met: both parts are shorter than the whole."""
 
 _BEND = 5.0
 _LARGEST_GUESS = 0.5
@@ -48,3 +61,22 @@ class Settling:
         left = size * share / (1.0 - share) if share < 1.0 else inf
         # Steps of rounding do not shrink any more; a few of them are enough.
         return size <= ROUNDING_STEP or left <= SETTLED_ERROR or self.calm >= MOST_CALM_STEPS
+
+
+def settles_at_once(size: float, pull: float) -> bool:
+    """What `Settling.after` says of the first step of a tick that began with its pose met."""
+    if size > SETTLED_STEP:
+        return False
+    share = min(_BEND * pull, _LARGEST_GUESS)
+    return size <= ROUNDING_STEP or size * share / (1.0 - share) <= SETTLED_ERROR
+
+
+def is_met(left: NDArray[np.float64], linear: int) -> bool:
+    """Whether what is left of a demand, (m,), the first `linear` of it m, the rest rad, is within tolerance.
+
+    Conditions between joints count like angles.
+    """
+    if left.dot(left) <= SURELY_MET:
+        return True
+    at, angles = left[:linear], left[linear:]
+    return sqrt(at.dot(at)) <= POSITION_TOLERANCE and sqrt(angles.dot(angles)) <= ORIENTATION_TOLERANCE

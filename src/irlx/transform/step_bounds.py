@@ -144,6 +144,33 @@ class StepLimiter:
             return self.bounds_with_sources(q, speed)
         return StepBounds(lower, upper, find_sources=lambda: self.bounds_with_sources(q, speed))
 
+    def kept(self, q: Array, speed: Array, rows: Array) -> int:
+        """How many of the first postures `rows` (N, n), one a tick from posture q (n,) on, keep all bounds.
+
+        `speed` (n,) is that of the joints at q, as in `bounds`.
+        """
+        before = np.concatenate([q[None], rows[:-1]])
+        steps = rows - before
+        inside = (steps >= self._speed_lower) & (steps <= self._speed_upper)
+        if self._accelerations_known:
+            speeds = np.concatenate([speed[None], steps[:-1] / self.dt])
+            inside &= steps >= self.dt * (speeds + self._gain_lower)
+            inside &= steps <= self.dt * (speeds + self._gain_upper)
+        if not (np.all(before >= self._roomy_lower) and np.all(before <= self._roomy_upper)):
+            inside &= self._keep_room(before, steps, rows)
+        kept = np.all(inside, axis=1)
+        return len(rows) if np.all(kept) else int(np.argmin(kept))
+
+    def _keep_room(self, before: Array, steps: Array, rows: Array) -> NDArray[np.bool_]:
+        """Which steps (N, n) from postures to postures (N, n) keep positions and the room to brake."""
+        limits = self.limits
+        inside = (rows >= limits.position_lower) & (rows <= limits.position_upper)
+        if self._accelerations_known:
+            below, above = before - limits.position_lower, limits.position_upper - before
+            inside &= steps >= -self.dt * self._brake_lower.speed(below)
+            inside &= steps <= self.dt * self._brake_upper.speed(above)
+        return inside
+
     def into_positions(self, q: Array) -> Array:
         """`JointLimits.into_positions` of one posture (n,)."""
         return np.minimum(np.maximum(q, self.limits.position_lower), self.limits.position_upper)

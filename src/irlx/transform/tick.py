@@ -8,28 +8,24 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg.lapack import dposv
 
 from irlx.robot.kinematics import Kinematics
 from irlx.transform.compact import Step, StepProblem, bounded_step, free_step
-from irlx.transform.criterion_pace import STRAIGHT, CriterionPace
+from irlx.transform.criterion_pace import CriterionPace
 from irlx.transform.metric import solved
 from irlx.transform.nearest import Nearest, damped_step, nearest_in_bounds, scaled_singular_values
 from irlx.transform.precision import (
     AT_BOUND,
     MAX_ITERATIONS,
     MAX_NEWTON_STEP,
-    ORIENTATION_TOLERANCE,
-    POSITION_TOLERANCE,
     SINGULAR_RATIO,
 )
 from irlx.transform.qp.solver import QpSolver
-from irlx.transform.settling import Settling
+from irlx.transform.settling import Settling, is_met
 from irlx.transform.tick_problem import TickProblem, build_tick
+from irlx.transform.undisturbed import UndisturbedTick
 
 Array = NDArray[np.float64]
-
-_SURELY_MET = min(POSITION_TOLERANCE, ORIENTATION_TOLERANCE) ** 2
 
 
 class TickStatus(Enum):
@@ -63,13 +59,20 @@ class TickSolution(NamedTuple):
 
 
 class TickSolver:
-    """Solves ticks of one robot; holds no state from one tick to the next but solver workspaces."""
+    """Solves ticks of one robot; holds no state from one tick to the next but solver workspaces.
+
+    `runs_free` tells that a tick without disturbance is that of `undisturbed`.
+    """
+
+    runs_free = True
 
     def __init__(self, kinematics: Kinematics, qp: QpSolver, max_iterations: int = MAX_ITERATIONS) -> None:
         self.kinematics = kinematics
         self._max_iterations = max_iterations
         self._linear = kinematics.task.linear
         self._qp = qp
+        self._plain_for = np.ones(kinematics.joints, dtype=bool)
+        self._plain = UndisturbedTick(kinematics, self._plain_for, max_iterations)
 
     def solve(self, problem: TickProblem, seed: Array | None = None, thorough: bool = True) -> TickSolution:
         """Find the posture on the demanded pose that makes the criterion smallest within the bounds.
@@ -113,61 +116,21 @@ class TickSolver:
         return self._unsolved(problem, nearest, first)
 
     def _undisturbed(self, problem: TickProblem, whole: Array) -> TickSolution | Array:
-        """Newton steps from `whole` (n,) for as long as no bound and no bad posture stands against them.
-
-        The same steps as those of `_newton`, with little more than the arithmetic of their closed form:
-        this is what ordinary ticks consist of. Frozen joints take part with an inverse Hessian and a pull
-        of zero, which gives them a step of exactly zero. A nearly singular J needs no factors of its own
-        here: what the Gram matrix loses of the pose the next step sees, and less than that stays behind
-        than the rounding of the pose itself is worth in joints. Returns the iterate to go on from with all
-        precautions, where there is something to be cautious of.
-        """
+        """Newton steps from `whole` (n,) without precautions, or the iterate to go on from with them."""
         target, q, bounds, criterion, free, clearance = problem
-        joints = q.size
-        inverse = criterion.inverse_hessian()
-        some_frozen = np.count_nonzero(free) < joints
-        whole_matrix = inverse.ndim == 2
-        if some_frozen:
-            if whole_matrix:
-                # Without its frozen joints a full matrix has another inverse.
-                return whole
-            inverse = inverse * free
-        settling, pace = Settling(), CriterionPace()
-        for iteration in range(1, self._max_iterations + 1):
-            twist, jacobian = self.kinematics.difference(q + whole, target)
-            pull = criterion.pull(q, whole)
-            if some_frozen:
-                pull = pull * free
-            scaled = jacobian.dot(inverse) if whole_matrix else jacobian * inverse
-            gram = scaled.dot(jacobian.T)
-            _, k, failed = dposv(gram, twist - jacobian.dot(pull))
-            d = pull + k.dot(scaled)
-            size = sqrt(d.dot(d))
-            if failed or not size <= MAX_NEWTON_STEP:
-                return whole
-            before = settling.before
-            done = settling.after(size, sqrt(pull.dot(pull)), self._met(twist))
-            taken = d
-            # Steps that shrink this fast find the path straight; the last step is a full one.
-            if not done and size > STRAIGHT * before:
-                share = pace.share(twist, criterion.hessian(), d)
-                if share != 1.0:
-                    along_path = dposv(gram, twist)[1].dot(scaled)
-                    taken = along_path + share * (d - along_path)
-                pace.took(twist, d, taken)
-            further = whole + taken
-            inside = np.count_nonzero(further >= bounds.lower) + np.count_nonzero(further <= bounds.upper)
-            if inside < 2 * joints:
-                return whole
-            whole = further
-            if done and clearance is not None and not clearance.kept(whole):
-                return whole
-            if done:
-                active = np.zeros(joints, dtype=np.int8)
-                # A frozen -0.0 plus 0.0 would be 0.0.
-                reached = np.where(free, q + whole, q) if some_frozen else q + whole
-                return TickSolution(TickStatus.SOLVED, reached, active, twist, iteration)
-        return whole
+        plain = self.undisturbed(free)
+        found, step, twist, iteration = plain.solve(target, q, whole, criterion, bounds)
+        if not found or (clearance is not None and not clearance.kept(step)):
+            return step
+        active = np.zeros(q.size, dtype=np.int8)
+        return TickSolution(TickStatus.SOLVED, plain.reached(q, step), active, twist, iteration)
+
+    def undisturbed(self, free: NDArray[np.bool_]) -> UndisturbedTick:
+        """What solves ticks of this robot that nothing stands against, where the joints `free` (n,) move."""
+        if free is not self._plain_for:
+            self._plain = UndisturbedTick(self.kinematics, free, self._max_iterations)
+            self._plain_for = free
+        return self._plain
 
     def _newton(self, problem: TickProblem, whole: Array) -> TickSolution | TickStatus:
         """Iterate from `whole` (step since the start of the tick); the status says why it failed."""
@@ -225,13 +188,7 @@ class TickSolver:
         return nearest_in_bounds(self.kinematics, problem.target, problem.q, lower, upper, problem.free)
 
     def _met(self, left: Array) -> bool:
-        # Both parts are shorter than the whole. Conditions between joints count like angles.
-        if left.dot(left) <= _SURELY_MET:
-            return True
-        linear = self._linear
-        return (
-            _length(left[:linear]) <= POSITION_TOLERANCE and _length(left[linear:]) <= ORIENTATION_TOLERANCE
-        )
+        return is_met(left, self._linear)
 
     def _no_rows(self) -> Array:
         return np.zeros(self.kinematics.rows)

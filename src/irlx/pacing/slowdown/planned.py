@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import chain
 
@@ -13,7 +13,7 @@ from irlx.blocks import LimitKind
 from irlx.motion.pose_path import PosePath, Poses
 from irlx.motion.time_law import TimeLaw
 from irlx.pacing.clock import Clock
-from irlx.pacing.demand import Demand
+from irlx.pacing.demand import Demands
 from irlx.pacing.resolution import EVERY_TICK, Resolution
 from irlx.pacing.row_check import BrokenBound, excess_of
 from irlx.pacing.slowdown.clock import PlannedClock
@@ -56,7 +56,7 @@ class PlannedMotion:
     """Rows q (M, n) of ticks 1 .. M, their demands, and the clock they follow, `factor` times slower."""
 
     q: Array
-    demands: tuple[Demand, ...]
+    demands: Demands
     timed: TimedCurve
     factor: float
 
@@ -92,7 +92,7 @@ class Ticking:
 
     dt: float
     ticks_of: Callable[[float], int]
-    demands_of: Callable[[Clock], Sequence[Demand]]
+    demands_of: Callable[[Clock], Demands]
     resolution: Resolution = EVERY_TICK
 
 
@@ -259,8 +259,8 @@ def rows_on_clock(model: Model, timed: TimedCurve, ticking: Ticking, least: floa
         rows = ticking.resolution.rows_of(ticks)
         whole = ticks * ticking.dt
         factor = whole / timed.clock.duration
-        demands = tuple(ticking.demands_of(_clock(timed.clock, ticks, rows, ticking.dt, factor)))
-        q = resample(model, timed.curve, np.array([demand.s for demand in demands]), _poses(demands))
+        demands = ticking.demands_of(_clock(timed.clock, ticks, rows, ticking.dt, factor))
+        q = resample(model, timed.curve, demands.s, Poses(demands.position, demands.rotation))
         excess = excess_of(start, np.vstack([q, q[-1:]]), model.limits, whole / rows)
         broken = excess.first
         if broken is None:
@@ -276,12 +276,6 @@ def rows_on_clock(model: Model, timed: TimedCurve, ticking: Ticking, least: floa
         if excess.position > 0.0 or slower > _LARGEST_STRETCH:
             break
     return found
-
-
-def _poses(demands: Sequence[Demand]) -> Poses:
-    return Poses(
-        np.array([demand.position for demand in demands]), np.array([demand.rotation for demand in demands])
-    )
 
 
 def _clock(planned: PlannedClock, ticks: int, rows: int, dt: float, factor: float) -> Clock:
