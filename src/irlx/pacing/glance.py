@@ -14,7 +14,6 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-import pinocchio as pin
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dposv
 
@@ -26,6 +25,7 @@ from irlx.pacing.posture_term import PostureTerm
 from irlx.pacing.slowdown.all_at_once import LONGEST, references, settle
 from irlx.pacing.slowdown.model import Model
 from irlx.robot.limits import JointLimits
+from irlx.robot.pose_targets import PoseTargets
 
 Array = NDArray[np.float64]
 
@@ -182,7 +182,7 @@ def _curve(motion: Glanced, model: Model, breaks: Array) -> Undisturbed | None:
     return Undisturbed(breaks, q[number], nodes, poses)
 
 
-def _predicted(model: Model, start: Array, targets: list[pin.SE3], drawn: Array) -> Array | None:
+def _predicted(model: Model, start: Array, targets: PoseTargets, drawn: Array) -> Array | None:
     """Postures (N + 1, n) near those of the nodes: one Newton step from each to the next."""
     free, difference = model.free, model.kinematics.difference
     inverse = free / model.weights

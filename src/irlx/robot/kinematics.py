@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import suppress
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import pinocchio as pin
@@ -15,11 +15,16 @@ from irlx.blocks.link_frame import LinkFrame
 from irlx.robot.description import COORDINATES, Inertial, Joint, JointKind, RobotDescription
 from irlx.robot.equality import Constraint
 from irlx.robot.implied import implied_by_pose
+from irlx.robot.pose_targets import PoseTargets
 from irlx.robot.task import Task, framed_difference, partial_difference, pose_errors
+
+if TYPE_CHECKING:
+    from irlx.robot.chain_batch import ChainBatch
 
 Array = NDArray[np.float64]
 
 _POSTURES = 4
+_MANY = 24
 _STILL = 1e-9
 _ROUNDING = 1e-10
 _LOCAL = pin.ReferenceFrame.LOCAL
@@ -254,6 +259,26 @@ class Kinematics:
         if self._plain:
             return self.tool_difference(q, target)
         return self._rows(q, target, exact=False)
+
+    def differences(self, q: Array, targets: PoseTargets) -> tuple[Array, Array]:
+        """`difference` of each of the postures q (N, n) and its target: (N, m) and (N, m, n).
+
+        Of many at once it is the same but for rounding.
+        """
+        if self._plain and len(q) >= _MANY:
+            found = self._batch.differences(q, (targets.rotation, targets.position))
+            return np.ascontiguousarray(found[0]), np.ascontiguousarray(found[1])
+        twists, jacobians = np.empty((len(q), self.rows)), np.empty((len(q), self.rows, self.joints))
+        for k, (row, target) in enumerate(zip(q, targets, strict=True)):
+            twists[k], jacobians[k] = self.difference(row, target)
+        return twists, jacobians
+
+    @cached_property
+    def _batch(self) -> ChainBatch:
+        # Imported here: it is built from a Kinematics.
+        from irlx.robot.chain_batch import ChainBatch
+
+        return ChainBatch(self)
 
     def tool_difference(self, q: Array, target: pin.SE3) -> tuple[Array, Array]:
         """log6(T(q)^-1 T_target), shape (6,), and the tool Jacobian, shape (6, n), whatever the task."""

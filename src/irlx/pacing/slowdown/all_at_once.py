@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 import numpy as np
-import pinocchio as pin
 from numpy.typing import NDArray
 
 from irlx.pacing.slowdown.model import Model
+from irlx.robot.pose_targets import PoseTargets
 from irlx.transform.criteria.criterion import Criterion
 from irlx.transform.criteria.least_motion import LeastMotion
 from irlx.transform.criteria.posture import Posture
@@ -31,7 +31,7 @@ def references(criteria: Iterable[Criterion]) -> Array | None:
     return np.array(found) if len(found) == len(asked) else None
 
 
-def settle(model: Model, q: Array, targets: Sequence[pin.SE3], drawn: Array) -> bool:
+def settle(model: Model, q: Array, targets: PoseTargets, drawn: Array) -> bool:
     """Bring postures q (N + 1, n), but the first, onto their poses and to what the criterion wants there.
 
     `drawn` from `references`. For least motion: each step has no part in the null space, the mean of those at

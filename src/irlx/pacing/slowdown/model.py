@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import pinocchio as pin
 from numpy.typing import NDArray
 
 from irlx.motion.pose_path import Poses
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
+from irlx.robot.pose_targets import PoseTargets
 from irlx.transform.clearance import Clearance
 from irlx.transform.row_rank import independent_rows, usual_rank
 
@@ -46,24 +45,19 @@ class Model:
         held |= limits.position_lower == limits.position_upper
         return np.asarray(self.free & ~held)
 
-    def targets(self, poses: Poses) -> list[pin.SE3]:
+    def targets(self, poses: Poses) -> PoseTargets:
         """Poses as the kinematics keeps them; made once for all uses of a grid."""
-        target = self.kinematics.target
-        return [target(r, p) for r, p in zip(poses.rotation, poses.position, strict=True)]
+        return PoseTargets(poses.rotation, poses.position)
 
-    def differences(self, q: Array, targets: Sequence[pin.SE3]) -> tuple[Array, Array]:
+    def differences(self, q: Array, targets: PoseTargets) -> tuple[Array, Array]:
         """What is left (N, m) from postures q (N, n) to the targets, matrices (N, m, f) of free joints."""
-        twists = np.empty((len(q), self.kinematics.rows))
-        jacobians = np.empty((len(q), self.kinematics.rows, q.shape[1]))
-        difference = self.kinematics.difference
-        for k, (row, target) in enumerate(zip(q, targets, strict=True)):
-            twists[k], jacobians[k] = difference(row, target)
+        twists, jacobians = self.kinematics.differences(q, targets)
         return twists, jacobians[:, :, self.free]
 
     def onto_path(
         self,
         q: Array,
-        targets: Sequence[pin.SE3],
+        targets: PoseTargets,
         rounds: int,
         held: NDArray[np.bool_] | None = None,
     ) -> OntoPath:

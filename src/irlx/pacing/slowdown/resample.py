@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pinocchio as pin
 from numpy.typing import NDArray
 
 from irlx.motion.pose_path import Poses
@@ -11,6 +10,7 @@ from irlx.pacing.slowdown.curve import JointCurve
 from irlx.pacing.slowdown.model import Model
 from irlx.pacing.slowdown.reserve import rounded_inside
 from irlx.robot.limits import JointLimits
+from irlx.robot.pose_targets import PoseTargets
 
 Array = NDArray[np.float64]
 
@@ -32,7 +32,7 @@ def resample(model: Model, curve: JointCurve, s: Array, poses: Poses) -> Array:
     q, twists, _ = model.onto_path(curve.at(s), targets, _ROUNDS)
     poor = np.flatnonzero(np.max(np.abs(twists), axis=1) > _POOR_SEED)
     if poor.size:
-        q[poor] = model.onto_path(q[poor], [targets[k] for k in poor], _ROUNDS).q
+        q[poor] = model.onto_path(q[poor], targets.chosen(poor), _ROUNDS).q
     if not np.all(np.isfinite(q)):
         raise np.linalg.LinAlgError("a posture of the curve is singular")
     q = _off_limits(model, q, targets)
@@ -52,7 +52,7 @@ def _one_way(q: Array, start: Array, limits: JointLimits) -> Array:
     return q
 
 
-def _off_limits(model: Model, q: Array, targets: list[pin.SE3]) -> Array:
+def _off_limits(model: Model, q: Array, targets: PoseTargets) -> Array:
     """Joints that their correction led a hair beyond a limit are put back there; others correct instead.
 
     Of these another may stand on its limit and pass it in turn: it is held as well, once more round.
@@ -64,7 +64,7 @@ def _off_limits(model: Model, q: Array, targets: list[pin.SE3]) -> Array:
         if rows.size == 0:
             break
         held |= beyond != 0.0
-        back = [targets[k] for k in rows]
+        back = targets.chosen(rows)
         try:
             q[rows] = model.onto_path(q[rows] + beyond[rows], back, _ROUNDS, held[rows]).q
         except np.linalg.LinAlgError:
