@@ -37,6 +37,9 @@ def braking_speed(room: Array, deceleration: Array, dt: float | Array) -> Array:
     m = floor((sqrt(1 + 8 u) - 1) / 2). Shapes (n,), or (N, n) with ticks `dt` (N, 1); room in rad or m, not
     negative; infinite where `deceleration` or `room` is.
     """
+    if np.all(np.isfinite(deceleration) & (deceleration > 0.0)) and np.all(room < np.inf):
+        # The formula as it stands: most robots know all accelerations.
+        return _stopping(room, deceleration * dt, deceleration * dt**2)
     speed = np.full(room.shape, np.inf)
     known = np.isfinite(deceleration) & np.isfinite(room)
     a = np.broadcast_to(deceleration, room.shape)[known]
@@ -202,9 +205,14 @@ class _Brake:
         """Fastest speed (n,) from which whole ticks stop within `room` (n,), see `braking_speed`."""
         if not (self._plain and np.count_nonzero(room < np.inf) == room.size):
             return braking_speed(room, self._deceleration, self._dt)
-        u = np.maximum(room, 0.0) / self._unit
-        m = np.floor((np.sqrt(1.0 + 8.0 * u) - 1.0) / 2.0)
-        return np.asarray(self._step * (u / (m + 1.0) + m / 2.0))
+        return _stopping(room, self._step, self._unit)
+
+
+def _stopping(room: Array, step: Array, unit: Array) -> Array:
+    """`braking_speed` for `step` a dt and `unit` a dt^2, all of them finite and above 0."""
+    u = np.maximum(room, 0.0) / unit
+    m = np.floor((np.sqrt(1.0 + 8.0 * u) - 1.0) / 2.0)
+    return np.asarray(step * (u / (m + 1.0) + m / 2.0))
 
 
 def _room_for(step: Array, deceleration: Array, dt: float) -> Array:

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import prod
 
 import numpy as np
 from numpy.typing import NDArray
@@ -145,10 +146,9 @@ class _Steps:
 def _continued(s: Array, q: Array, last: int) -> Array:
     """Step (n,) behind the knot `last` that continues the knots up to it as a cubic."""
     first = max(last - 3, 0)
-    at, known = s[last + 1], s[first : last + 1]
-    apart = np.where(np.eye(known.size, dtype=np.bool_), 1.0, known - known[:, None])
-    factors = np.where(np.eye(known.size, dtype=np.bool_), 1.0, known - at) / apart
-    return np.asarray(np.prod(factors, axis=1) @ q[first : last + 1] - q[last])
+    *known, at = s[first : last + 2].tolist()
+    shares = [prod((b - at) / (b - a) for b in known if b != a) for a in known]
+    return np.asarray(np.array(shares) @ q[first : last + 1] - q[last])
 
 
 class _Stretch:
@@ -286,8 +286,7 @@ def _within_sides(sides: SideRows, least: float, most: float) -> tuple[float, fl
 def _one_unknown(
     rows: Array, target: Array, room: Room, price: float, sides: SideRows | None
 ) -> tuple[Array, float] | None:
-    """The cost over the one unknown is convex and made of parabolas: its least value is where one of them
-    has its own, where two of them meet, or at an end of what the positions allow."""
+    """`_many_unknowns` where there is but one."""
     slope = rows[:, 0]
     still = np.abs(slope) <= _NO_SLOPE
     if np.any(still & ((target > room.high + _ROUNDING) | (target < room.low - _ROUNDING))):
@@ -306,11 +305,32 @@ def _one_unknown(
         [[0.0], target[above] / room.up[above] - 1.0, -target[below] / room.down[below] - 1.0]
     )
     rise = np.concatenate([[0.0], slope[above] / room.up[above], -slope[below] / room.down[below]])
+    z, stretch = _least_cost(at, rise, price, least, most)
+    return target + slope * z, stretch
+
+
+def _least_cost(at: Array, rise: Array, price: float, least: float, most: float) -> tuple[float, float]:
+    """z in [least, most] with the least 1/2 z^2 + price (e + e^2 / 2000), e = max(at + rise z), and that e.
+
+    The cost is convex and made of parabolas, one a line. Its least value is that of the higher one of two
+    lines, one on either side of it, once no third line is above them there.
+    """
     own = -price * rise * (1.0 + _CURVATURE * at) / (1.0 + price * _CURVATURE * rise**2)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        meet = ((at[:, None] - at) / (rise - rise[:, None])).ravel()
-    tried = np.concatenate([own, meet[np.isfinite(meet)], [0.0]])
-    tried = np.clip(tried, least, most)
-    stretch = np.max(at[:, None] + rise[:, None] * tried, axis=0)
-    best = int(np.argmin(0.5 * tried**2 + price * (stretch + 0.5 * _CURVATURE * stretch**2)))
-    return target + slope * tried[best], float(stretch[best])
+    own = np.minimum(np.maximum(own, least), most)
+    left = right = -1
+    z = min(max(0.0, least), most)
+    for _ in range(len(at)):
+        heights = at + rise * z
+        line = int(heights.argmax())
+        if line in (left, right):
+            break
+        if z + price * rise[line] * (1.0 + _CURVATURE * heights[line]) < 0.0:
+            left = line
+        else:
+            right = line
+        if left < 0 or right < 0:
+            z = float(own[line])
+        else:
+            meet = (at[left] - at[right]) / (rise[right] - rise[left])
+            z = float(min(own[left], max(own[right], min(max(meet, least), most))))
+    return z, float(np.max(at + rise * z))
