@@ -68,7 +68,7 @@ class Machine:
         """A least-motion task along a path."""
         least = LeastMotion(self.weights)
         start = self.start if start is None else start
-        ticking = Ticking(dt, lambda time: whole_ticks(time, dt), lambda clock: list(demands(path, clock, 1)))
+        ticking = Ticking(dt, lambda time: whole_ticks(time, dt), lambda clock: demands(path, clock, 1))
         return MotionTask(path, law, law.acc, start, lambda s, _: least, ticking)
 
     def errors(self, q: np.ndarray, poses) -> tuple[float, float]:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from irlx.transform.compact import StepProblem, bounded_step, free_step, null_space_rows, path_step
-from irlx.transform.orthogonal import unrounded_residual
+from irlx.transform.orthogonal import Factors, unrounded_residual
 from irlx.transform.qp.proxqp import ProxQpSolver
 
 pytestmark = pytest.mark.req("TRF-01")
@@ -144,3 +144,17 @@ def test_the_residual_rounds_once() -> None:
             for row, b in zip(matrix.tolist(), right.tolist(), strict=True)
         ]
         assert unrounded_residual(matrix, x, right).tolist() == [float(value) for value in exact]
+
+
+@pytest.mark.parametrize(("n", "m"), [(7, 6), (6, 6), (11, 6), (3, 1), (20, 9)])
+def test_factors_are_orthonormal_and_give_the_rows_back(n: int, m: int) -> None:
+    """Q1 R = (J L^-T)', Q'Q = 1, by plain products; numpy's own factors are the same but for signs."""
+    rng = np.random.default_rng([n, m])
+    jacobian, weights = rng.normal(size=(m, n)), rng.uniform(0.1, 10.0, n)
+    factors = Factors.of(jacobian, weights)
+    columns = (jacobian / np.sqrt(weights)).T
+    upper = np.triu(factors.triangle)
+    np.testing.assert_allclose(factors.along @ upper, columns, atol=1e-13)
+    whole = np.hstack([factors.along, factors.aside])
+    np.testing.assert_allclose(whole.T @ whole, np.eye(n), atol=1e-14)
+    np.testing.assert_allclose(np.abs(np.linalg.qr(columns)[1]), np.abs(upper), atol=1e-12)

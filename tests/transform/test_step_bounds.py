@@ -169,3 +169,31 @@ def test_contradicting_bounds_name_the_joint_and_both_limits(making) -> None:
     assert bounds.conflicts.tolist() == [1]
     assert bounds.upper_source[1] == BoundSource.BRAKING
     assert bounds.lower_source[1] == BoundSource.ACCELERATION
+
+
+@pytest.mark.req("TRF-03")
+@pytest.mark.parametrize("seed", range(40))
+def test_many_rows_are_judged_as_tick_by_tick(making, seed: int) -> None:
+    """Random walks that sooner or later pass a bound: the first row that does is that of `bounds`."""
+    rng = np.random.default_rng(seed)
+    n, dt = 4, float(rng.choice(TICKS))
+    accelerations = rng.choice([0.5, 3.0, np.inf], n) if seed % 3 else np.full(n, np.inf)
+    reach = rng.choice([0.01, 0.5, np.inf], n)
+    limits = making.limits(n, reach, rng.choice([0.2, 2.0, np.inf], n), accelerations)
+    limiter = StepLimiter(limits, dt)
+    q, speed = np.zeros(n), np.zeros(n)
+    scale = dt * rng.choice([1e-16, 0.01, 0.3]) * np.ones(n)
+    steps = np.cumsum(rng.normal(size=(60, n)) * scale * (dt if seed % 2 else 1.0), axis=0)
+    steps[rng.integers(60)] = 0.0
+    rows = np.cumsum(steps, axis=0)
+    if seed % 5 == 0 and np.isfinite(reach[0]):
+        rows[10:, 0] = reach[0]
+    expected = 0
+    for row in rows:
+        bounds = limiter.bounds(q, speed)
+        step = row - q
+        outside = np.any(step < bounds.lower) or np.any(step > bounds.upper)
+        if outside or np.any(limiter.into_positions(row) != row):
+            break
+        q, speed, expected = row, step / dt, expected + 1
+    assert limiter.kept(np.zeros(n), np.zeros(n), rows) == expected, f"seed {seed}"

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from irlx.motion.trapezoid import Trapezoid
-from irlx.pacing.slowdown.elastic_walk import Passage, elastic_walk
+from irlx.pacing.slowdown.elastic_walk import Passage, _least_cost, elastic_walk
 from irlx.pacing.slowdown.grid import PathGrid, path_grid
 from irlx.pacing.slowdown.reserve import RESERVE, reserved
 from irlx.transform.criteria.least_motion import LeastMotion
@@ -162,3 +162,36 @@ def test_frozen_joints_keep_their_bits(name: str) -> None:
     bounds = reserved(limits, grid.intervals + 1, RESERVE)
     passage = elastic_walk(robot.model(limits, (2,)), grid, robot.start, lambda s, _: least, bounds, RESERVE)
     assert np.all(passage.q[:, 2] == robot.start[2])
+
+
+def cost(z: np.ndarray, at: np.ndarray, rise: np.ndarray, price: float) -> np.ndarray:
+    stretch = np.max(at[:, None] + rise[:, None] * z, axis=0)
+    return 0.5 * z**2 + price * (stretch + stretch**2 / 2000)
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_the_one_unknown_is_where_no_other_value_costs_less(seed: int) -> None:
+    """Against all values that can be: where a line's own parabola is lowest, where two meet, the ends."""
+    rng = np.random.default_rng(seed)
+    lines = int(rng.integers(1, 15))
+    at = np.append(0.0, rng.normal(size=lines) * 10.0 ** rng.uniform(-3, 1))
+    rise = np.append(0.0, rng.normal(size=lines) * 10.0 ** rng.uniform(-3, 3))
+    if seed % 4 == 0:
+        # Duplicates, level lines and ones that meet in one place.
+        at[1:], rise[1:] = rng.integers(-2, 3, lines), rng.integers(-2, 3, lines)
+    if seed % 5 == 0:
+        at[1:] += 1e-16
+    price = float(10.0 ** rng.uniform(-12, 2))
+    least, most = sorted((rng.normal(size=2) * 10.0 ** rng.uniform(-3, 2)).tolist())
+    least, most = (-np.inf if seed % 3 == 0 else least), (np.inf if seed % 7 == 0 else most)
+    z, stretch = _least_cost(at, rise, price, least, most)
+    assert least <= z <= most
+    assert stretch == np.max(at + rise * z)
+    own = -price * rise * (1.0 + 1e-3 * at) / (1.0 + 1e-3 * price * rise**2)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        meet = ((at[:, None] - at) / (rise - rise[:, None])).ravel()
+    tried = np.clip(np.concatenate([own, meet[np.isfinite(meet)], [0.0]]), least, most)
+    best = float(np.min(cost(tried, at, rise, price)))
+    assert float(cost(np.array([z]), at, rise, price)[0]) <= best + 1e-12 * max(abs(best), 1e-12), (
+        f"seed {seed}"
+    )
