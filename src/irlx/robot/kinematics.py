@@ -5,16 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import suppress
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
 from irlx.blocks.link_frame import LinkFrame
-from irlx.robot.description import COORDINATES, Inertial, Joint, JointKind, RobotDescription
+from irlx.robot.description import COORDINATES, Joint, RobotDescription
 from irlx.robot.equality import Constraint
 from irlx.robot.implied import implied_by_pose
+from irlx.robot.joint_models import displacement, inertia_of, joint_model, placement
 from irlx.robot.pose_targets import PoseTargets
 from irlx.robot.task import Task, framed_difference, partial_difference, pose_errors
 
@@ -28,48 +29,6 @@ _MANY = 24
 _STILL = 1e-9
 _ROUNDING = 1e-10
 _LOCAL = pin.ReferenceFrame.LOCAL
-_ALIGNED = {
-    (JointKind.REVOLUTE, (1.0, 0.0, 0.0)): pin.JointModelRX,
-    (JointKind.REVOLUTE, (0.0, 1.0, 0.0)): pin.JointModelRY,
-    (JointKind.REVOLUTE, (0.0, 0.0, 1.0)): pin.JointModelRZ,
-    (JointKind.PRISMATIC, (1.0, 0.0, 0.0)): pin.JointModelPX,
-    (JointKind.PRISMATIC, (0.0, 1.0, 0.0)): pin.JointModelPY,
-    (JointKind.PRISMATIC, (0.0, 0.0, 1.0)): pin.JointModelPZ,
-}
-
-
-def placement(xyz: tuple[float, float, float], rpy: tuple[float, float, float]) -> pin.SE3:
-    """SE3 of an origin: translation m, rotations about the fixed x, y, z axes, rad."""
-    return pin.SE3(pin.rpy.rpyToMatrix(*rpy), np.array(xyz))
-
-
-def _joint_model(joint: Joint) -> Any:
-    """Pinocchio's joint; continuous joints turn about a plain angle so that nq = nv = n."""
-    kind = JointKind.REVOLUTE if joint.kind is JointKind.CONTINUOUS else joint.kind
-    aligned = _ALIGNED.get((kind, joint.axis))
-    if aligned is not None:
-        return aligned()
-    model = (
-        pin.JointModelPrismaticUnaligned if kind is JointKind.PRISMATIC else pin.JointModelRevoluteUnaligned
-    )
-    return model(np.array(joint.axis))
-
-
-def _displacement(joint: Joint, value: float) -> pin.SE3:
-    """Motion of a joint frame that stands at `value` (rad or m)."""
-    if joint.kind is JointKind.FIXED:
-        return pin.SE3.Identity()
-    axis = np.array(joint.axis)
-    if joint.is_prismatic:
-        return pin.SE3(np.eye(3), axis * value)
-    return pin.SE3(pin.exp3(axis * value), np.zeros(3))
-
-
-def _inertia(inertial: Inertial) -> pin.Inertia:
-    ixx, ixy, ixz, iyy, iyz, izz = inertial.inertia
-    matrix = np.array([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]])
-    about_centre = pin.Inertia(inertial.mass, np.zeros(3), matrix)
-    return placement(inertial.xyz, inertial.rpy).act(about_centre)
 
 
 def _coupling(description: RobotDescription) -> tuple[Array | None, Array]:
@@ -201,18 +160,18 @@ class Kinematics:
         if inertial is not None:
             # Many published URDFs have inertias that no body has; nothing here moves by them.
             with suppress(RuntimeError, ValueError):
-                self.model.appendBodyToJoint(parent, _inertia(inertial), in_parent)
+                self.model.appendBodyToJoint(parent, inertia_of(inertial), in_parent)
         if link == self.description.tip:
             frame = pin.Frame(link, parent, 0, in_parent * self.tool, pin.FrameType.OP_FRAME)
             self._tip_frame = self.model.addFrame(frame)
         for joint in self._children.get(link, []):
             origin = in_parent * placement(joint.xyz, joint.rpy)
             if joint.name in self._moving_names:
-                index = self.model.addJoint(parent, _joint_model(joint), origin, joint.name)
+                index = self.model.addJoint(parent, joint_model(joint), origin, joint.name)
                 self._add_link(joint.child, index, pin.SE3.Identity())
             else:
                 held_at = self.description.locked.get(joint.name, 0.0)
-                self._add_link(joint.child, parent, origin * _displacement(joint, held_at))
+                self._add_link(joint.child, parent, origin * displacement(joint, held_at))
 
     def _task_frame(self) -> tuple[int, Array] | None:
         """Pinocchio joint that carries the frame of the task, and its rotation there; None for the tool's."""
