@@ -88,20 +88,20 @@ def posture_term(
     CYCLICSTART, draws every row, governed while the robot stands away from the best one for it.
     """
     weights = model.weights
+    here = Posture(weights, start)
     if asked is not None:
         reference_at = asked.reference(start)
         through = tuple(share * law.length for share, _ in asked.on_the_way)
-        return PostureTerm(lambda s, _: Posture(weights, reference_at(s / law.length)), True, through)
+        return PostureTerm(lambda s, _: here.towards(reference_at(s / law.length)), True, through)
     if cyclic is not None:
         # Far off its pose the stored posture may have no best one near by on some piece of the path: then the
         # posture stays as far as the tool lets it, and the next moves lead on from where it is.
-        here = Posture(weights, start)
         staying = PostureTerm(lambda s, _: here, True)
         away = return_way(model, start, cyclic, qp)
         if away is None:
             drawn = Posture(weights, cyclic)
             return PostureTerm(lambda s, _: drawn, True, otherwise=staying)
         reference = governed_reference(away, law, model.limits)
-        return PostureTerm(lambda s, _: Posture(weights, reference(s)), True, otherwise=staying)
+        return PostureTerm(lambda s, _: here.towards(reference(s)), True, otherwise=staying)
     fixed = LeastMotion(weights)
     return PostureTerm(lambda s, _: fixed, False)

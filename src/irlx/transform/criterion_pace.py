@@ -81,7 +81,8 @@ class CriterionPace:
     def _nearly_met(self, twist: Array) -> bool:
         # Steps that chatter leave the path again and again, the farther the longer they are.
         most = _PATH_NEARLY_MET if self._steps < _LATE else _LATE_NEARLY_MET
-        return float(np.max(np.abs(twist))) <= most
+        # No entry is longer than the whole.
+        return bool(twist.dot(twist) <= most**2 or np.max(np.abs(twist)) <= most)
 
 
 def _along_path(problem: StepProblem, step: Step) -> Array | None:

@@ -14,9 +14,15 @@ class Posture(Criterion):
 
     name = "posture"
 
-    def __init__(self, weights: Array, reference: Array) -> None:
+    def __init__(self, weights: Array, reference: Array, inverse: Array | None = None) -> None:
+        """`inverse` is 1 / weights, where that is known."""
         self.weights = weights
         self.reference = reference
+        self._inverse = 1.0 / weights if inverse is None else inverse
+
+    def towards(self, reference: Array) -> Posture:
+        """The same towards another posture (n,)."""
+        return Posture(self.weights, reference, self._inverse)
 
     def value(self, q: Array, step: Array) -> float:
         """1/2 (q + S - r)' W (q + S - r)."""
@@ -34,3 +40,7 @@ class Posture(Criterion):
     def pull(self, q: Array, step: Array) -> Array:
         """r - (q + S)."""
         return self.reference - (q + step)
+
+    def inverse_hessian(self) -> Array:
+        """W^-1."""
+        return self._inverse
