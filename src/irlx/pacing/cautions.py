@@ -15,6 +15,7 @@ from irlx.pacing.slowdown.clock_bounds import Governor
 from irlx.pacing.slowing import Slowing
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
+from irlx.robot.pose_targets import PoseTargets
 from irlx.transform.row_rank import usual_rank
 
 Array = NDArray[np.float64]
@@ -95,11 +96,10 @@ def _singular_values(q: Array, path: PathPart, kinematics: Kinematics) -> Array:
     """
     if len(path.demands) == 0 or not np.any(path.free):
         return np.empty((0, 0))
-    found = [
-        kinematics.difference(posture, kinematics.target(demand.rotation, demand.position))[1]
-        for posture, demand in zip(q, path.demands, strict=False)
-    ]
-    jacobians = np.array(found)[:, :, path.free]
+    rows = min(len(q), len(path.demands))
+    targets = PoseTargets(path.demands.rotation[:rows], path.demands.position[:rows])
+    found = kinematics.differences(q[:rows], targets)
+    jacobians = found[1][:, :, path.free]
     return np.asarray(np.linalg.svd(jacobians * kinematics.row_scale[:, None], compute_uv=False))
 
 
