@@ -7,6 +7,7 @@ import pytest
 
 from irlx.pacing.slowdown.model import Model
 from irlx.robot.limits import JointLimits
+from irlx.robot.pose_targets import PoseTargets
 from irlx.transform.row_rank import independent_rows, usual_rank
 
 pytestmark = pytest.mark.req("TRF-15")
@@ -74,7 +75,7 @@ def test_postures_come_onto_a_pose_that_joints_can_reach_although_their_rows_dep
     on = np.array([np.where(moving, rng.uniform(-2.5, 2.5, 7), arm7.q) for _ in range(40)])
     on = on[np.abs(np.sin(on[:, 5])) > 0.1]
     off = on + 1e-4 * rng.normal(size=on.shape) * moving
-    targets = [arm7.pose(row) for row in on]
+    targets = PoseTargets(*arm7.kinematics.tool_poses(on))
     found = model.onto_path(off, targets, 3).q
     assert np.array_equal(found[:, ELBOW], on[:, ELBOW])
     for row, start, target in zip(found, off, targets, strict=True):
