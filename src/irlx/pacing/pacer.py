@@ -47,7 +47,7 @@ from irlx.pacing.executed import Executed
 from irlx.pacing.frames import seen_from
 from irlx.pacing.inputs import answer_of_inputs
 from irlx.pacing.joint_moves import move_joints
-from irlx.pacing.kept_clear import kept_clear
+from irlx.pacing.kept_clear import KeptClear
 from irlx.pacing.motion import Motion
 from irlx.pacing.moved_constraints import moved_constraints
 from irlx.pacing.nearest_rows import nearest_rows
@@ -91,7 +91,7 @@ class Pacer:
         self._last_way = (0.0, 0.0)
         self._distances = Clearances(setup.kinematics, setup.scene)
         self._links_checked = False
-        self._clearance = kept_clear(setup.kinematics, setup.scene, self.options)
+        self._kept = KeptClear(setup.kinematics, setup.scene, self.options)
         self._rest: MoveBlock | None = None
         self._constraints = setup.kinematics.constraints
         self._programmed_in: LinkFrame | None = None
@@ -136,12 +136,15 @@ class Pacer:
     @property
     def clearance(self) -> Clearance | None:
         """What is kept clear as the switches stand, None where nothing is."""
-        return self._clearance
+        return self._kept.clearance
 
     @property
     def _clear_from_now(self) -> Clearance | None:
         """What is kept clear in a motion that begins now."""
-        return None if self._clearance is None else self._clearance.beginning(self.tick * self.setup.dt)
+        return self._from_now(self.clearance)
+
+    def _from_now(self, clearance: Clearance | None) -> Clearance | None:
+        return None if clearance is None else clearance.beginning(self.tick * self.setup.dt)
 
     @property
     def _situation(self) -> Situation:
@@ -247,7 +250,7 @@ class Pacer:
         """Two motions as they are joined, or as they were; a note says what became of the corner."""
         limits = self._situation.in_force().limits
         done = crossed(
-            held, carried, self._setup.kinematics, limits, self._setup.dt, self.locate, self._clearance
+            held, carried, self._setup.kinematics, limits, self._setup.dt, self.locate, self.clearance
         )
         for note in done.notes:
             self.notes.add(note)
@@ -291,10 +294,12 @@ class Pacer:
         if isinstance(block, SwitchBlock):
             self.options = self.options.after(block, self.q)
         if isinstance(block, ToolBlock | ObstacleBlock):
-            self._clearance = kept_clear(self._setup.kinematics, self._setup.scene, self.options)
+            self._kept = KeptClear(self._setup.kinematics, self._setup.scene, self.options)
         if isinstance(block, ObstacleBlock) and block.active:
-            names = [obstacle.name for obstacle in self._setup.scene.members(block.name)]
-            self.warnings += standing(self._clear_from_now, self.q, names, place)
+            members = self._setup.scene.members(block.name)
+            names = [obstacle.name for obstacle in members]
+            alone = self._from_now(self._kept.clearance_from(members))
+            self.warnings += standing(alone, self.q, names, place)
         return None
 
     def _check_switch(self, block: Block, place: Place) -> None:
@@ -327,7 +332,7 @@ class Pacer:
         if kinematics is not self.setup.kinematics:
             self._setup = replace(self._setup, kinematics=kinematics)
             self._solver = self._new_solver()
-            self._clearance = kept_clear(kinematics, self._setup.scene, self.options)
+            self._kept = KeptClear(kinematics, self._setup.scene, self.options)
 
     def _motion(self, moves: list[MoveBlock]) -> Motion:
         """The first motion from stop to stop that moves become."""

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from irlx.blocks import FREE_TURN, PoseTarget, ToleranceClause
 from irlx.diagnostics import Place
 from irlx.pacing.freed import Freed
-from irlx.pacing.kept_clear import kept_clear
+from irlx.pacing.kept_clear import KeptClear
 from irlx.pacing.options import LimitsInForce
 from irlx.pacing.posed import Pose, pose_of
 from irlx.pacing.posture_term import Asked
@@ -131,7 +131,7 @@ def widened(
     cyclic = None if options.cyclic_posture is None else posture(options.cyclic_posture, end)
     clearance = situation.clearance
     if clearance is not None:
-        found = kept_clear(wide, setup.scene, options)
+        found = KeptClear(wide, setup.scene, options).clearance
         clearance = None if found is None else found.beginning(situation.tick * situation.dt)
     freed = Freed(kinematics, wide, real, limits, weights, posture(situation.q, begin)[None])
     inner = replace(

@@ -379,18 +379,23 @@ class Distances:
     # ---- building
 
     def _add_of_link(self, link: str, solid: Solid) -> int:
+        key = "link", True, id(solid)
+        if key in self._numbers:
+            return self._numbers[key]
         joint, frame = self.kinematics.body_of(link)
-        return self._add(("link", True, id(solid)), joint, frame * pose_of(solid.placement), solid)
+        return self._add(key, joint, frame * pose_of(solid.placement), solid)
 
     def _add_other(self, pair: WatchedPair) -> int:
         if pair.obstacle is None:
             return self._add_of_link(pair.other, pair.other_solid)
+        key = pair.other, False, id(pair.other_solid)
+        if key in self._numbers:
+            return self._numbers[key]
         within = pose_of(pair.other_solid.placement)
         world = pose_of(pair.obstacle.placement) * within
-        known = len(self._numbers)
-        number = self._add((pair.other, False, id(pair.other_solid)), 0, world, pair.other_solid)
+        number = self._add(key, 0, world, pair.other_solid)
         trajectory = Trajectory(pair.obstacle) if pair.obstacle.trajectory else None
-        if number == known and (trajectory or self._sightings is not None):
+        if trajectory or self._sightings is not None:
             radius = float(np.linalg.norm(within.translation)) + bounding_radius(pair.other_solid.shape)
             way: Way = trajectory or Resting(pair.obstacle)
             begun = way.pose(0.0)
@@ -400,17 +405,15 @@ class Distances:
         return number
 
     def _add(self, key: tuple[str, bool, int], joint: int, pose: pin.SE3, solid: Solid) -> int:
-        number = self._numbers.get(key)
-        if number is None:
-            shape: Any = collision_shape(solid.shape)
-            name = f"solid {len(self._numbers)}"
-            number = int(self._model.addGeometryObject(pin.GeometryObject(name, joint, pose, shape)))
-            self._numbers[key] = number
-            self._bodies.append(joint)
-            self._speeds.append(0.0)
-            size = bounding_radius(solid.shape)
-            self._radii.append(float(np.linalg.norm(pose.translation)) + size)
-            self._sizes.append(size)
+        shape: Any = collision_shape(solid.shape)
+        name = f"solid {len(self._numbers)}"
+        number = int(self._model.addGeometryObject(pin.GeometryObject(name, joint, pose, shape)))
+        self._numbers[key] = number
+        self._bodies.append(joint)
+        self._speeds.append(0.0)
+        size = bounding_radius(solid.shape)
+        self._radii.append(float(np.linalg.norm(pose.translation)) + size)
+        self._sizes.append(size)
         return number
 
 
