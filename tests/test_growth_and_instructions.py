@@ -63,6 +63,11 @@ def test_other_versions_are_told_and_compared_all_the_same():
     assert result.over == ["a"]
 
 
+def test_what_was_not_counted_stays_stored():
+    assert compared({"a": 9}, {"a": 8, "b": 7}).updated.instructions == {"a": 9, "b": 7}
+    assert compared({"a": 9}).updated.instructions == {"a": 9}
+
+
 def test_counts_come_back_from_their_file(tmp_path):
     from stored_counts import Counts
 
@@ -77,7 +82,7 @@ def test_every_piece_of_work_has_a_stored_count():
 
     stored = json.loads((BENCHMARKS / "instructions.json").read_text(encoding="utf-8"))
     names = [name for pieces in GROUPS.values() for name in pieces]
-    assert list(stored["instructions"]) == [*names, "irlx --help", "irlx run"]
+    assert sorted(stored["instructions"]) == sorted([*names, "irlx --help", "irlx run"])
     assert set(LIBRARIES) <= set(stored["made_with"])
 
 
@@ -108,6 +113,19 @@ def test_the_exponent_is_that_of_the_upper_part(power):
 
     curve = [(1, 50.0), (10, 60.0), *((x, 3.0 * x**power) for x in (100, 1000, 5000))]
     assert exponent(curve) == pytest.approx(power, abs=1e-12)
+
+
+def test_the_document_has_what_is_stored_and_reasons_for_what_is_worse_than_linear():
+    from growth import DOCUMENT, STORED, exponent, with_table
+
+    stored = json.loads(STORED.read_text(encoding="utf-8"))
+    text = DOCUMENT.read_text(encoding="utf-8")
+    assert with_table(text, stored["curves"]) == text
+    for kind, curves in stored["curves"].items():
+        for name, curve in curves.items():
+            assert stored["exponents"][kind][name] == round(exponent(curve), 2)
+            # What is measured once more on another day may be off by a little.
+            assert exponent(curve) < (2.0 if kind == "joints" else 1.25), (kind, name)
 
 
 def test_programs_that_are_measured_have_no_errors_and_their_lines():

@@ -11,7 +11,7 @@ import pytest
 
 from irlx.pacing.slowdown.elastic_walk import Passage
 from irlx.pacing.slowdown.grid import STEP, PathGrid
-from irlx.pacing.slowdown.relax import Smoothing, relax
+from irlx.pacing.slowdown.relax import Smoothing, _solve_blocks, relax
 from irlx.pacing.slowdown.reserve import RESERVE, reserved
 from machines import machine
 from slow_cases import grid_of, jacobian_at, slow_limits, walked
@@ -161,3 +161,18 @@ def test_six_free_joints_leave_nothing_to_smooth() -> None:
     of = case("arm7", 5.0, (2,))
     q = of.relaxed(Smoothing(0.1, 1.0))
     assert np.all(q == of.passage.q)
+
+
+@pytest.mark.parametrize(("count", "r"), [(1, 2), (2, 1), (3, 2), (9, 1), (9, 4)])
+def test_the_block_band_system_is_that_of_the_dense_matrix(count: int, r: int) -> None:
+    rng = np.random.default_rng(count * 10 + r)
+    whole = 20.0 * np.eye(count * r)
+    blocks = [rng.uniform(-1.0, 1.0, (max(count - k, 0), r, r)) for k in range(3)]
+    blocks[0] = blocks[0] + blocks[0].transpose(0, 2, 1) + 20.0 * np.eye(r)
+    for k, beside in enumerate(blocks):
+        for i, block in enumerate(beside):
+            rows, columns = (slice(j * r, (j + 1) * r) for j in (i, i + k))
+            whole[rows, columns], whole[columns, rows] = block, block.T
+    right = rng.uniform(-1.0, 1.0, (count, r))
+    expected = np.linalg.solve(whole, right.ravel()).reshape(count, r)
+    np.testing.assert_allclose(_solve_blocks(*blocks, right), expected, rtol=0, atol=1e-14)

@@ -245,12 +245,11 @@ def _solve_blocks(main: Array, beside: Array, second: Array, right: Array) -> Ar
     count, r = right.shape
     above = 3 * r - 1
     band = np.zeros((above + 1, count * r))
+    by_knot = band.reshape(above + 1, count, r)
     for offset, blocks in enumerate((main, beside, second)):
-        starts = np.arange(len(blocks)) * r
-        for row in range(r):
-            for column in range(r):
-                distance = offset * r + column - row
-                if distance >= 0:
-                    band[above - distance, starts + offset * r + column] = blocks[:, row, column]
+        row, column = np.indices((r, r)).reshape(2, -1)
+        distance = offset * r + column - row
+        row, column, distance = (part[distance >= 0] for part in (row, column, distance))
+        by_knot[above - distance, offset:, column] = blocks[:, row, column].T
     solution = solveh_banded(band, right.reshape(-1), overwrite_ab=True, check_finite=False)
     return np.asarray(solution).reshape(count, r)
