@@ -1,13 +1,15 @@
 """How times and memory grow: with joints, lines of a program, length of a stream, obstacles, routines.
 
-    python benchmarks/growth.py             measures, prints a table, stores growth.json beside this file
-    python benchmarks/growth.py --stored    prints the table of what is stored (--markdown: for the document)
+    python benchmarks/growth.py             measures, stores growth.json beside this file, prints a table
     python benchmarks/growth.py --only lines,obstacles    measures these anew, and keeps the others
+    python benchmarks/growth.py --stored    measures nothing
+
+In each case the table of docs/performance.md becomes that of what is stored; `python docs/pictures growth`
+draws the picture.
 
 Each point is measured in a process of its own, by computing time, the least of some rounds; memory is the
 most that the process ever had beyond that of its imports. The exponent of a curve is the slope of the line
-through its last three points when both axes are logarithmic: 1 is linear. It is drawn by
-`docs/pictures/draw_growth.py`, which reads what is stored.
+through its last three points when both axes are logarithmic: 1 is linear.
 """
 
 from __future__ import annotations
@@ -23,6 +25,8 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 STORED = HERE / "growth.json"
+DOCUMENT = HERE.parent / "docs" / "performance.md"
+HEAD = "| grows | from | to | exponent |\n|---|---|---|---|\n"
 FITTED = 3
 """Through how many of the last points the line goes that gives the exponent."""
 POINTS: dict[str, tuple[int, ...]] = {
@@ -56,7 +60,7 @@ def measured(kind: str) -> dict[str, Curve]:
         command = [sys.executable, str(HERE / "growth_points.py"), kind, str(x)]
         done = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True)
         for name, value in json.loads(done.stdout).items():
-            curves.setdefault(name, []).append((x, value))
+            curves.setdefault(name, []).append((x, float(f"{value:.4g}")))
         print(f"{kind} {x}", file=sys.stderr, flush=True)
     return curves
 
@@ -72,12 +76,18 @@ def rows(stored: Mapping[str, Mapping[str, Curve]]) -> list[tuple[str, str, str,
     return found
 
 
-def table(stored: Mapping[str, Mapping[str, Curve]], markdown: bool) -> str:
-    """The rows as text, or as a table of Markdown."""
-    if markdown:
-        lines = ["| grows | from | to | exponent |", "|---|---|---|---|"]
-        return "\n".join([*lines, *(f"| {' | '.join(row)} |" for row in rows(stored))])
+def table(stored: Mapping[str, Mapping[str, Curve]]) -> str:
+    """The rows as text."""
     return "\n".join(f"{row[0]:46}{row[1]:>24}{row[2]:>28}{row[3]:>8}" for row in rows(stored))
+
+
+def with_table(text: str, stored: Mapping[str, Mapping[str, Curve]]) -> str:
+    """A text of Markdown in which the table of growth has these rows. ValueError where it has none."""
+    before, head, after = text.partition(HEAD)
+    if not head:
+        raise ValueError("the document has no table of growth")
+    rest = after[after.index("\n\n") :]
+    return before + head + "\n".join(f"| {' | '.join(row)} |" for row in rows(stored)) + rest
 
 
 def main() -> None:
@@ -85,7 +95,6 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
     parser.add_argument("--stored", action="store_true", help="measure nothing")
     parser.add_argument("--only", default=",".join(POINTS), help="kinds to measure, commas between them")
-    parser.add_argument("--markdown", action="store_true", help="print the table in Markdown")
     asked = parser.parse_args()
     before = json.loads(STORED.read_text(encoding="utf-8")) if STORED.exists() else {"curves": {}}
     if not asked.stored:
@@ -97,7 +106,9 @@ def main() -> None:
         }
         before = {"date": date.today().isoformat(), "exponents": exponents, "curves": curves}
         STORED.write_text(json.dumps(before, indent=1) + "\n", encoding="utf-8")
-    print(table(before["curves"], asked.markdown))
+    text = DOCUMENT.read_text(encoding="utf-8")
+    DOCUMENT.write_text(with_table(text, before["curves"]), encoding="utf-8")
+    print(table(before["curves"]))
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@
     python benchmarks/instructions.py --check    exits 1 where a count is 2 % over its stored one
     python benchmarks/instructions.py --update   stores the counts in instructions.json
     python benchmarks/instructions.py --twice    counts twice, and prints how far the two differ
+    python benchmarks/instructions.py --only text,streams    of the groups text, ticks, streams, commands
 
 Unlike times, counts hardly depend on what else the machine does. They do depend on the versions of Python
 and of the libraries and, through kernels that these choose at run time, on the kind of processor; OpenBLAS is
@@ -23,7 +24,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from importlib.metadata import version
 from pathlib import Path
@@ -34,6 +35,7 @@ from workloads import GROUPS, short_program
 HERE = Path(__file__).resolve().parent
 STORED = HERE / "instructions.json"
 LIBRARIES = ("numpy", "scipy", "pin", "proxsuite", "lark", "orjson", "pydantic")
+COMMANDS = "commands"
 NOTHING = ("-c", "pass")
 FIXED = {
     "PYTHONHASHSEED": "0",
@@ -48,8 +50,8 @@ LEFT = ("PATH", "HOME", "VIRTUAL_ENV")
 """Of the environment as it is, what stays."""
 
 
-def counted() -> Counts:
-    """Count everything, a process a core at a time."""
+def counted(groups: Collection[str]) -> Counts:
+    """Count the pieces of some groups, a process a core at a time."""
     with tempfile.TemporaryDirectory(prefix="irlx") as made:
         folder = Path(made)
         program = short_program(folder)
@@ -57,13 +59,16 @@ def counted() -> Counts:
             "irlx --help": ("-m", "irlx", "--help"),
             "irlx run": ("-m", "irlx", "run", str(program), "-o", str(folder / "short.irdata"), "--quiet"),
         }
-        inside = {group: (str(HERE / "workloads.py"), group) for group in GROUPS}
+        if COMMANDS not in groups:
+            commands = {}
+        inside = {group: (str(HERE / "workloads.py"), group) for group in GROUPS if group in groups}
         with ThreadPoolExecutor(os.cpu_count()) as threads:
             sections = {name: threads.submit(_sections, command, folder) for name, command in inside.items()}
             whole = {name: threads.submit(_whole, command, folder) for name, command in commands.items()}
-            nothing = threads.submit(_whole, NOTHING, folder)
+            nothing = threads.submit(_whole, NOTHING, folder) if commands else None
         found = {name: count for made in sections.values() for name, count in made.result().items()}
-        found |= {name: count.result() - nothing.result() for name, count in whole.items()}
+        if nothing is not None:
+            found |= {name: count.result() - nothing.result() for name, count in whole.items()}
     return Counts(made_with(), found)
 
 
@@ -122,9 +127,9 @@ def _run(command: Sequence[str], out: Path, *options: str) -> None:
             raise SystemExit(f"{' '.join(words)}: exit {done.returncode}\n{done.stderr}")
 
 
-def difference_of_two() -> str:
-    """Everything counted twice, and how far the counts differ."""
-    first, second = counted().instructions, counted().instructions
+def difference_of_two(groups: Collection[str]) -> str:
+    """Pieces counted twice, and how far the counts differ."""
+    first, second = counted(groups).instructions, counted(groups).instructions
     parts = {name: abs(second[name] / first[name] - 1.0) for name in first}
     worst = max(parts, key=lambda name: parts[name])
     lines = [f"{name:26}{first[name]:>16,}{second[name]:>16,}{part:>12.1e}" for name, part in parts.items()]
@@ -135,6 +140,7 @@ def main() -> int:
     """Count, and do what is asked; exit code."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
     parser.add_argument("--json", action="store_true", help="print an object instead of a table")
+    parser.add_argument("--only", default=",".join([*GROUPS, COMMANDS]), help="groups, commas between them")
     asked = parser.add_mutually_exclusive_group()
     asked.add_argument("--check", action="store_true", help="exit 1 where a count is 2 %% over the stored")
     asked.add_argument("--update", action="store_true", help="store the counts")
@@ -146,16 +152,21 @@ def main() -> int:
             file=sys.stderr,
         )
         return 2
+    groups = options.only.split(",")
+    if not set(groups) <= {*GROUPS, COMMANDS}:
+        parser.error(f"--only takes {', '.join([*GROUPS, COMMANDS])}")
     if options.twice:
-        print(difference_of_two())
+        print(difference_of_two(groups))
         return 0
-    compared = Comparison(Counts.read(STORED) if STORED.exists() else None, counted())
+    stored = Counts.read(STORED) if STORED.exists() else None
+    compared = Comparison(stored, counted(groups))
     if options.json:
         print(json.dumps(compared.found.instructions, indent=2))
     else:
         print("\n".join(compared.table()))
     if options.update:
-        compared.found.write(STORED)
+        # Of a piece that is no more the count goes, too, where all were counted.
+        (compared.found if {*GROUPS, COMMANDS} <= set(groups) else compared.updated).write(STORED)
         return 0
     failures = compared.verdict() if options.check else []
     for line in failures:

@@ -57,6 +57,12 @@ class Comparison:
         return [name for name in self.found.instructions if self.change(name) is None]
 
     @property
+    def updated(self) -> Counts:
+        """What is to be stored: the new counts, and the stored ones of names that were not counted now."""
+        before = {} if self.stored is None else self.stored.instructions
+        return Counts(self.found.made_with, {**before, **self.found.instructions})
+
+    @property
     def other_versions(self) -> list[str]:
         """What the stored counts were made with that is another one now."""
         if self.stored is None:
