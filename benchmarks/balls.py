@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from chains import Arm, Walked
 
+from chains import Arm, Walked
 from irlx.scene.distances import Distances
 from irlx.scene.obstacle import Obstacle
 from irlx.scene.watched_pair import watched_pairs

@@ -15,11 +15,10 @@ from functools import partial
 from pathlib import Path
 from time import process_time
 
+import irlx
 from balls import far, felt
 from chains import Walked, arm7, chain, is_planned, slow, there_and_back
 from growth_programs import of_lines, of_routines
-
-import irlx
 from irlx.streams import BlockRecord, JointStream, RowBatch, open_writer, scan_stream
 
 TICK = 0.001

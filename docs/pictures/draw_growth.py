@@ -118,7 +118,8 @@ def fill(axes: Axes, panel: Panel, stored: Mapping[str, Any]) -> None:
         told = f"{label}  $\\propto x^{{{stored['exponents'][kind][name]:.2f}}}$"
         axes.loglog(x, y, "o-", color=colour, linewidth=1.4, markersize=3.6, label=told)
         spans.append((x.min(), x.max(), y.min(), y.max()))
-    left, right, low, high = (choose(side) for choose, side in zip((min, max) * 2, zip(*spans), strict=True))
+    starts, ends, lows, highs = zip(*spans, strict=True)
+    left, right, low, high = min(starts), max(ends), min(lows), max(highs)
     # Twice as long for twice as much.
     axes.plot([left, right], [low, low * right / left], "--", color=GUIDE, linewidth=0.8, zorder=1)
     decades = np.log10(high / low)
