@@ -71,9 +71,14 @@ def rows(stored: Mapping[str, Mapping[str, Curve]]) -> list[tuple[str, str, str,
     for kind, curves in stored.items():
         for name, curve in curves.items():
             what, _, unit = name.rpartition(", ")
-            ends = [f"{value:,.3g} {unit} at {x:,}" for x, value in (curve[0], curve[-1])]
+            ends = [f"{_told(value)} {unit} at {x:,}" for x, value in (curve[0], curve[-1])]
             found.append((f"{what} by {kind}", *ends, f"{exponent(curve):.2f}"))
     return found
+
+
+def _told(value: float) -> str:
+    """Three digits, and no exponent."""
+    return f"{value:,.0f}" if value >= 999.5 else f"{value:.3g}"
 
 
 def table(stored: Mapping[str, Mapping[str, Curve]]) -> str:
