@@ -16,6 +16,7 @@ _INSTALL = 'pip install "irlx[robots]"'
 _UPGRADE = 'pip install --upgrade "irlx[robots]"'
 
 
+@cache
 def external_names() -> tuple[str, ...]:
     """Names of the robots that the extra `robots` brings, installed or not."""
     return tuple(sorted(entry.name[:-5] for entry in _FOLDER.iterdir() if entry.name.endswith(".toml")))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
 from irlx.cell.external import external_names, external_section, external_urdf
@@ -17,6 +18,7 @@ def robot_names() -> tuple[str, ...]:
     return packaged_names() + external_names()
 
 
+@cache
 def named_section(name: str) -> RobotSection:
     """What a robot of that name is by itself: tip, start, weights, limits."""
     if name in external_names():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from importlib.resources import files
 
 _FOLDER = files("irlx.cell") / "robots"
@@ -11,6 +12,7 @@ DEMO_ROBOT = "arm7"
 """The robot of the program to begin with."""
 
 
+@cache
 def packaged_names() -> tuple[str, ...]:
     """Names of the packaged robots."""
     return tuple(sorted(entry.name[:-5] for entry in _FOLDER.iterdir() if entry.name.endswith(".urdf")))

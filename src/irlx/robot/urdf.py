@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from collections.abc import Collection, Mapping
-from dataclasses import replace
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
 from math import inf, sqrt
 
 from irlx.robot.description import Inertial, Joint, JointKind, Mimic, RobotDescription
 from irlx.robot.link_solids import link_solids
 from irlx.robot.urdf_values import RobotModelError, number_of, origin_of, vector_of
 from irlx.solids.placement import Vector3
+from irlx.solids.shape import Solid
 
 MOST_LINKS = 500
 """Links of a robot; longer chains are a mistake, and would exhaust the stack."""
@@ -28,14 +30,8 @@ def read_urdf(
     names to the values (rad or m) they are held at; joints that lead to the links `carriers` are axes as
     well. Raises RobotModelError naming the element.
     """
-    root_element = _robot_element(text)
-    joints = tuple(_joint(element) for element in root_element.findall("joint"))
-    links = [element.get("name", "") for element in root_element.findall("link")]
-    inertials = {
-        element.get("name", ""): inertial
-        for element in root_element.findall("link")
-        if (inertial := _inertial(element)) is not None
-    }
+    model = _model(text)
+    links, joints = model.links, model.joints
     root = _check_tree(links, joints)
     tip = _choose_tip(tip, links, joints)
     locked = dict(locked or {})
@@ -46,13 +42,38 @@ def read_urdf(
     for link in carriers:
         if link not in links:
             raise RobotModelError(f"no link is called '{link}'", link, tuple(links))
-    solids = link_solids(root_element.findall("link"))
-    name = root_element.get("name", "robot")
+    inertials, solids = dict(model.inertials), dict(model.solids)
     robot = RobotDescription(
-        name, root, tip, joints, inertials, locked, solids=solids, carriers=tuple(carriers)
+        model.name, root, tip, joints, inertials, locked, solids=solids, carriers=tuple(carriers)
     )
     check_followers(robot)
     return _within_followers(robot)
+
+
+@dataclass(frozen=True)
+class _Model:
+    """What a URDF text says, whatever the tip."""
+
+    name: str
+    links: tuple[str, ...]
+    joints: tuple[Joint, ...]
+    inertials: Mapping[str, Inertial]
+    solids: Mapping[str, tuple[Solid, ...]]
+
+
+@lru_cache(maxsize=8)
+def _model(text: str) -> _Model:
+    """Content of a URDF text; loading a cell asks for it several times, and so do runs in one process."""
+    root = _robot_element(text)
+    joints = tuple(_joint(element) for element in root.findall("joint"))
+    elements = root.findall("link")
+    inertials = {
+        element.get("name", ""): inertial
+        for element in elements
+        if (inertial := _inertial(element)) is not None
+    }
+    links = tuple(element.get("name", "") for element in elements)
+    return _Model(root.get("name", "robot"), links, joints, inertials, link_solids(elements))
 
 
 def _robot_element(text: str) -> ET.Element:
@@ -116,7 +137,7 @@ def _within_followers(robot: RobotDescription) -> RobotDescription:
     return replace(robot, joints=joints) if joints != robot.joints else robot
 
 
-def _check_tree(links: list[str], joints: tuple[Joint, ...]) -> str:
+def _check_tree(links: Sequence[str], joints: tuple[Joint, ...]) -> str:
     """Name of the root link; raises RobotModelError where links and joints form no tree."""
     if not links:
         raise RobotModelError("it has no <link>")
@@ -148,7 +169,7 @@ def _check_tree(links: list[str], joints: tuple[Joint, ...]) -> str:
     return roots[0]
 
 
-def _choose_tip(tip: str | None, links: list[str], joints: tuple[Joint, ...]) -> str:
+def _choose_tip(tip: str | None, links: Sequence[str], joints: tuple[Joint, ...]) -> str:
     if tip is not None:
         if tip not in links:
             raise RobotModelError(f"no link is called '{tip}'", tip, tuple(links))
