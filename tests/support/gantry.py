@@ -222,7 +222,7 @@ def robot() -> RobotDescription:
     return ROBOT
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def gantry_kit():
     """Everything of this file that tests build with, under one name."""
 
