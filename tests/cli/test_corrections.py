@@ -122,8 +122,8 @@ def run(tmp_path: Path):
 @pytest.mark.parametrize(
     ("name", "sensor"),
     [
-        # Each program under two sensors by default, each sensor with half of the programs.
-        pytest.param(name, sensor, marks=pytest.mark.slow if (row + column) % 2 else ())
+        # Each program under one sensor by default, each sensor with a quarter of the programs.
+        pytest.param(name, sensor, marks=pytest.mark.slow if (row + column) % 4 else ())
         for row, name in enumerate(PROGRAMS)
         for column, sensor in enumerate(["white", "turned step", "out of reach", "there and back"])
     ],

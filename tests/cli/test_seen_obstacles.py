@@ -116,7 +116,7 @@ def keeps_limits(found) -> None:
 
 def off_path(found) -> float:
     """Most that the tool is off its planned pose · its correction, m or rad, by the verifier's kinematics."""
-    executed = [one for one in Execution(prepare(found.job.program.path), planned_share=PLANNED) if one.rows]
+    executed = [one for one in Execution(found.job, planned_share=PLANNED) if one.rows]
     planned = np.vstack([found.job.cell.start[None], *(one.rows.q for one in executed)])
     held = len(found.q) - len(planned)
     assert held == found.stream.corrections.held_ticks
@@ -220,7 +220,7 @@ def test_an_obstacle_that_rests_changes_nothing(tmp_path, answer):
 
 
 def test_the_arm_goes_back_to_the_plan_once_the_ball_has_gone(tmp_path):
-    path = files(tmp_path, LINE.replace("2 SEC", "3 SEC"))
+    path = files(tmp_path, LINE.replace("2 SEC", "3 SEC"), tick=20)
 
     def there_and_back(sample):
         return {"ball": (0.149, 0.0 - 0.15 * abs(sample.t - 3.5), 0.660)}
@@ -230,20 +230,21 @@ def test_the_arm_goes_back_to_the_plan_once_the_ball_has_gone(tmp_path):
     planned = np.vstack([found.q[:1], *rows])
     away = np.max(np.abs(found.q - planned), axis=1)
     assert np.max(away) > 0.05
-    np.testing.assert_array_equal(found.q[-20:], planned[-20:])
+    np.testing.assert_array_equal(found.q[-10:], planned[-10:])
     assert np.min(distances(found)) >= MARGIN - 1e-6
     assert off_path(found) < 1e-6
 
 
 def test_the_same_ball_gives_the_same_bits(tmp_path):
-    path = files(tmp_path, tick=20)
-    first, second = (followed(path, coming(0.2)) for _ in range(2))
-    assert first.q.tobytes() == second.q.tobytes()
-    assert first.stream.obstacles == second.stream.obstacles
+    path = files(tmp_path, LINE.replace("2 SEC", "0.5 SEC"), tick=20)
+    first, second = (irlx.stream(path, obstacles=coming(0.2)) for _ in range(2))
+    rows = [[one.q.tobytes() for one in stream] for stream in (first, second)]
+    assert rows[0] == rows[1]
+    assert first.obstacles == second.obstacles
 
 
 def test_ball_and_noise_together(tmp_path):
-    path = files(tmp_path)
+    path = files(tmp_path, tick=20)
     rng = np.random.default_rng(5)
 
     def noise(_):
@@ -254,10 +255,10 @@ def test_ball_and_noise_together(tmp_path):
 
     found = followed(path, jittering, correct=noise)
     assert off_path(found) < 1e-6
-    inside = distances(found) < MARGIN - 1e-6
-    assert np.sum(inside) == found.stream.obstacles.near_ticks
-    assert np.min(distances(found)) > MARGIN - 2e-3
-    assert found.stream.corrections.requests > 500
+    apart = distances(found)
+    assert np.sum(apart < MARGIN - 1e-6) == found.stream.obstacles.near_ticks
+    assert np.min(apart) > MARGIN - 2e-3
+    assert found.stream.corrections.requests > 250
 
 
 def test_a_correction_goes_as_far_as_an_obstacle_lets_it(tmp_path):
@@ -269,7 +270,8 @@ def test_a_correction_goes_as_far_as_an_obstacle_lets_it(tmp_path):
     post = (below * 1e3).round(3).tolist()
 
     def down(text):
-        return followed(files(tmp_path, text, post=post), lambda _: None, correct=lambda _: wanted)
+        path = files(tmp_path, text, tick=20, post=post)
+        return followed(path, lambda _: None, correct=lambda _: wanted)
 
     found, free = down(program), down(heedless(program))
     assert off_path(found) < 1e-6
@@ -279,7 +281,7 @@ def test_a_correction_goes_as_far_as_an_obstacle_lets_it(tmp_path):
     assert apart[-1] < MARGIN + 0.002
     assert np.min(distances(free, coal.Box(0.02, 0.02, 0.02), places[: len(free.q)])) < 0.0
     report = found.stream.corrections
-    assert report.refused_ticks > 50
+    assert report.refused_ticks > 25
     assert report.delayed_ticks == report.ticks
     assert found.stream.obstacles.near_ticks == 0
 

@@ -79,7 +79,7 @@ def out_of_order(text):
 
 @pytest.mark.req("LANG-74")
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
-@settings(RELAXED, max_examples=3)
+@settings(RELAXED, max_examples=2)
 @given(data=st.data())
 def test_programs_with_other_blanks_and_more_comments(path, data):
     judge_with_other_blanks(path, data)
@@ -101,9 +101,21 @@ def judge_with_other_blanks(path, data):
 
 @pytest.mark.req("LANG-74")
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
-@settings(RELAXED, max_examples=4)
+@settings(RELAXED, max_examples=2)
 @given(data=st.data())
 def test_blanks_alone_do_not_show(path, data):
+    judge_blanks(path, data)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
+@settings(RELAXED, max_examples=20)
+@given(data=st.data())
+def test_many_blanks_do_not_show(path, data):
+    judge_blanks(path, data)
+
+
+def judge_blanks(path, data):
     """However many blanks stand between the words, the same text comes out, within the margin."""
     text = path.read_text(encoding="utf-8")
     words = [str(token) for token in lex(source_text("t.irl", text)).tokens]

@@ -17,6 +17,7 @@ from irlx.transform.measures.inertia import inertia_matrix
 from irlx.transform.measures.joint_centring import JointCentring
 from irlx.transform.measures.manipulability import Manipulability
 from irlx.transform.measures.smallest_singular_value import SmallestSingularValue
+from kept_runs import kept_report, kept_run
 from machines import machine
 
 WAYS = {"arm7": (-100, 150, -60), "koch11": (-800, 500, 300)}
@@ -59,7 +60,7 @@ class Shop:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
 
-    def run(self, name: str, body: str, tick: float = 20, acceleration: float = 600.0, **more) -> irlx.Run:
+    def run(self, name: str, body: str, tick: float = 20, acceleration: float = 600.0) -> irlx.Run:
         joints = machine(name).n
         cell = CELL.format(model=name, acceleration=[acceleration] * joints, tick=tick)
         (self.folder / "p.toml").write_text(cell, encoding="utf-8")
@@ -67,10 +68,10 @@ class Shop:
         head = f"PROGRAM p;\nVAR POSE: home := {home_of(name)}, away;\nBEGIN\n  away := {away};"
         text = f"{head}\n{body}\nENDPROGRAM;\n"
         (self.folder / "p.irl").write_text(text, encoding="utf-8")
-        run = irlx.run(self.folder / "p.irl", **more)
-        report = irlx.verify(run, program=self.folder / "p.irl", cell=self.folder / "p.toml")
+        files = self.folder / "p.irl", self.folder / "p.toml"
+        report = kept_report(*files)
         assert report.passed, report
-        return run
+        return kept_run(*files)
 
 
 @pytest.fixture

@@ -70,8 +70,9 @@ HARD = [("koch11", 2.0, 4), ("koch11", 3.0, 3), ("koch11", 3.0, 4), ("koch11", 3
 HARD += [("arm7", 3.0, 3)]
 """Robot, distance and seed of draws towards which a straight way jumped or did not settle."""
 
-HARDEST, SHORT_TICKS = [HARD[3], HARD[5]], pytest.mark.slow
-"""Draws walked at 1 ms by default too, one of each robot; the mark of other draws and shorter ticks."""
+BY_DEFAULT = [(HARD[5], 1e-3), *((hard, 1e-2 if place % 2 else 5e-2) for place, hard in enumerate(HARD))]
+BY_DEFAULT += [(HARD[3], 5e-2), (HARD[5], 5e-2)]
+"""Each draw at one tick, the hardest of each robot at two, one at 1 ms."""
 
 SEEDS = first(1, [range(4), range(4, 12)])
 
@@ -131,7 +132,7 @@ def assert_governed(arm, goal: np.ndarray, rows: list[np.ndarray], dt: float, to
 @pytest.mark.req("TRF-05")
 @pytest.mark.req("TRF-14")
 @pytest.mark.parametrize("seeds", SEEDS, ids=str)
-@pytest.mark.parametrize("away", [1.0, pytest.param(2.0, marks=pytest.mark.slow), 3.0])
+@pytest.mark.parametrize("away", [*(pytest.param(way, marks=pytest.mark.slow) for way in (1.0, 2.0)), 3.0])
 def test_a_governed_reference_is_never_far(arm, away: float, seeds: range) -> None:
     """What a tick is drawn to is a step away however far the goal: it settles, and no joint jumps."""
     law = Trapezoid.fastest(1.0, 1.0, 1.0)
@@ -174,7 +175,7 @@ def test_a_goal_on_whose_slope_the_fibre_bends_away(koch11) -> None:
 @pytest.mark.parametrize(
     ("name", "away", "seed", "dt"),
     [
-        pytest.param(*hard, dt, marks=SHORT_TICKS if dt < 1e-3 or (dt < 1e-2 and hard not in HARDEST) else ())
+        pytest.param(*hard, dt, marks=() if (hard, dt) in BY_DEFAULT else pytest.mark.slow)
         for dt in (2.5e-4, 1e-3, 1e-2, 5e-2)
         for hard in HARD
     ],
