@@ -22,7 +22,7 @@ from machines import machine
 
 pytestmark = [pytest.mark.req("TRF-12"), pytest.mark.req("QA-05")]
 
-QUICK, LONG, PORTION = range(8), range(2000, 2160), 20
+QUICK, LONG, PORTION = range(5), range(2000, 2180), 20
 MOST = {"koch11": 3, "arm7": 1, "rail6": 1, "panda": 1}
 """Conditions that leave a robot the joints it needs for its tool."""
 

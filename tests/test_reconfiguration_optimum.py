@@ -37,7 +37,7 @@ from irlx.cell.robot_data import robot_data_folder
 
 pytestmark = [pytest.mark.req("TRF-05"), pytest.mark.req("TRF-15"), pytest.mark.req("LANG-65")]
 
-QUICK, LONG = 20, 100
+QUICK, LONG = 10, 110
 KINDS = ["near", "far", "branch", "outside", "equal", "one joint", "along"]
 TICKS = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0]
 POSE, REACHED, SLOPE, ASIDE = 1e-6, 1e-6, 1e-6, 1e-3
@@ -378,14 +378,14 @@ def test_reconfigurations_end_at_konf_or_at_a_minimum(tmp_path, name: str) -> No
 def test_frozen_elbow_does_not_end_the_motion_of_the_others(tmp_path) -> None:
     """arm7's shoulder and wrist are points: the elbow's own angle never changes along the fibre."""
     robot, moved = arm("arm7"), 0
-    for seed in (2360, *range(14)):
+    for seed in (2360, *range(6)):
         case = replace(drawn_case(robot, seed), frozen=4)
         run = irlx.run(case.write(tmp_path, "arm7"))
         cell = load_cell(tmp_path / "drawn.toml")
         assert_kept(robot, case, cell, run)
         assert not faults_of_end(robot, case, cell, run.q[-1]), f"seed {seed}"
         moved += len(run.q) > 1
-    assert moved > 10
+    assert moved > 4
 
 
 @pytest.mark.slow

@@ -30,9 +30,9 @@ SYNTAX = [
 
 @pytest.mark.req("QA-09")
 @pytest.mark.parametrize(("content", "code", "words"), SYNTAX)
-def test_programs_that_cannot_be_read(command, inside, folder, names, content, code, words):
+def test_programs_that_cannot_be_read(inside, folder, names, content, code, words):
     write(folder, "p.irl", content)
-    done = command("run", "p.irl")
+    done = inside("run", "p.irl")
     assert done.returncode == code
     assert words in done.stderr
     assert done.stdout == ""
@@ -159,7 +159,7 @@ def test_programs_that_the_robot_cannot_execute(inside, folder, names, declarati
 
 @pytest.mark.req("QA-09")
 @pytest.mark.req("LANG-72")
-def test_a_pose_out_of_reach_in_the_third_move(command, inside, folder, names):
+def test_a_pose_out_of_reach_in_the_third_move(inside, folder, names):
     text = """PROGRAM p;
 VAR POSITION: near := (11400, 1000, 3500);
 BEGIN
@@ -168,7 +168,7 @@ BEGIN
 ENDPROGRAM
 """
     write(folder, "p.irl", text)
-    done = command("run", "p.irl", "-o", "out.irdata", "-o", "out.csv")
+    done = inside("run", "p.irl", "-o", "out.irdata", "-o", "out.csv")
     assert done.returncode == 1
     assert done.stdout == ""
     message = done.stderr.splitlines()[0]

@@ -51,7 +51,7 @@ def off_circle(positions):
     )
 
 
-def test_program_text_to_verified_stream(command, folder, names):
+def test_program_text_to_verified_stream(inside, folder, names):
     body = """  CYCLICSTART;
   MOVE CIRCLE top, tilted SPEED := 300;
   MOVE CIRCLE top, far ANGLE := -540 CIRC_ORI := 'END';
@@ -59,20 +59,20 @@ def test_program_text_to_verified_stream(command, folder, names):
   MOVE CIRCLE turned, POSITION(11500, 1000, 3500) CIRC_ORI := 'VIA' TIME := 4;
   CYCLICEND;"""
     (folder / "p.irl").write_text(text_of(body), encoding="utf-8")
-    done = command("run", "p.irl", "-o", "p.irdata", "-o", "p.npz")
+    done = inside("run", "p.irl", "-o", "p.irdata", "-o", "p.npz")
     assert done.returncode == 1  # the third point of the second circle is its start
     assert "IRL427" in done.stderr
     (folder / "p.irl").write_text(
         text_of(body.replace("top, far ANGLE", "top, side ANGLE")), encoding="utf-8"
     )
-    done = command("run", "p.irl", "-o", "p.irdata", "-o", "p.npz")
+    done = inside("run", "p.irl", "-o", "p.irdata", "-o", "p.npz")
     assert done.returncode == 0, done.stderr
     assert done.stdout.count(" checks passed") == 2
     assert {"p.irdata", "p.npz"} <= set(names(folder))
-    checked = command("verify", "p.irdata", "--json")
+    checked = inside("verify", "p.irdata", "--json")
     assert checked.returncode == 0, checked.stdout
     assert json.loads(checked.stdout)["passed"] is True
-    listed = command("blocks", "p.irl").stdout.splitlines()
+    listed = inside("blocks", "p.irl").stdout.splitlines()
     assert listed[2].startswith(
         "3 MOVE CIRCLE via (11400 1000 3600) kept in R_BASE to (11400 1100 3500) kept"
     )

@@ -49,8 +49,8 @@ def test_default_output_is_beside_the_program(inside, folder, names):
 
 
 @pytest.mark.req("QA-09")
-def test_json(command, folder):
-    done = command("run", "p.irl", "--json")
+def test_json(inside, folder):
+    done = inside("run", "p.irl", "--json")
     assert (done.returncode, done.stderr) == (0, "")
     found = json.loads(done.stdout)
     assert found["files"] == ["p.irdata"]

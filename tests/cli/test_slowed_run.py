@@ -29,11 +29,11 @@ position = [180, [-150, 0], [-180, 0], [0, 180], [-180, 0], [-180, 0], 180, 60, 
 speed = [3, 1.8, 1.8, 1.8, 3, 2, 2, 3, 2, 2, 3]
 acceleration = [9, 9, 9, 9, 9, 9, 9, 9, 9, 90, 9]
 [motion]
-tick_ms = 20
+tick_ms = 50
 speed = 1000
 acc = 2000
 """
-DT = 0.02
+DT = 0.05
 
 
 @pytest.fixture
@@ -122,17 +122,17 @@ def test_the_terminal_tells_it(place, capsys):
 
 
 def test_json_has_the_events(place, capsys):
-    assert main(["run", "p.irl", "-o", "out.npz", "--json", "--explain-tick", "60"]) == 0
+    assert main(["run", "p.irl", "-o", "out.npz", "--json", "--explain-tick", "24"]) == 0
     plain = json.loads(capsys.readouterr().out)
     (first, *_) = plain["summary"]["slowed"]
     assert first["event"] == "slowed"
     assert {"line", "joint", "kind", "bound", "requested", "achieved", "lost"} <= set(first)
-    assert plain["tick"]["tick"] == 60
+    assert plain["tick"]["tick"] == 24
     assert len(plain["tick"]["joints"]) == 11
 
 
 def test_a_tick_is_explained(run, place):
-    tick = 60
+    tick = 24
     found = irlx.run(place / "p.irl", explain_tick=tick).explanation
     assert (found.tick, found.line, found.motion) == (tick, 5, "MOVE LIN")
     assert found.way_of_pacing == "row of a motion planned as a whole"
@@ -159,9 +159,9 @@ def test_ticks_without_a_path_are_explained_too(run, place, block, motion):
 
 
 def test_explained_on_the_terminal(place, capsys):
-    assert main(["run", "p.irl", "-o", "out.npz", "--explain-tick", "60"]) == 0
+    assert main(["run", "p.irl", "-o", "out.npz", "--explain-tick", "24"]) == 0
     text = capsys.readouterr().out
-    assert text.startswith("tick 60 (1.2 s), line 5: MOVE LIN, row of a motion planned as a whole\n")
+    assert text.startswith("tick 24 (1.2 s), line 5: MOVE LIN, row of a motion planned as a whole\n")
     for word in ("demand ", "criterion ", "active ", "joint_11", "deg", "mm", "least motion"):
         assert word in text
     assert main(["run", "p.irl", "-o", "out.npz", "--explain-tick", "100000"]) == 0

@@ -78,12 +78,17 @@ def test_where_only_a_sum_counts_the_last_angle_is_0():
 
 
 def test_axis_and_angle():
-    for value in random_orientations(3):
-        angle, axis = apply("ROTANGLE", value), apply("ROTAXIS", value)
-        expected = rotation(quaternion_of(value))
-        assert abs(np.radians(angle) - expected.magnitude()) < SMALL
-        assert abs(np.linalg.norm(axis) - 1.0) < SMALL
-        assert_same(apply("ORIVANG", tuple(axis.tolist()), angle), expected)
+    values = random_orientations(3)
+    angles = np.array([apply("ROTANGLE", value) for value in values])
+    axes = np.array([apply("ROTAXIS", value) for value in values])
+    expected = rotation([quaternion_of(value) for value in values])
+    assert np.max(np.abs(np.radians(angles) - expected.magnitude())) < SMALL
+    assert np.max(np.abs(np.linalg.norm(axes, axis=1) - 1.0)) < SMALL
+    made = [
+        apply("ORIVANG", tuple(axis), angle)
+        for axis, angle in zip(axes.tolist(), angles.tolist(), strict=True)
+    ]
+    assert_same(made, expected)
 
 
 def test_no_turn_is_about_z():
@@ -112,22 +117,25 @@ def test_columns():
 
 
 def test_quaternion_components():
-    for value in random_orientations(6):
-        found = [apply(f"QUAT{letter}", value) for letter in "ABCD"]
-        assert tuple(found) == quaternion_of(value)
-        assert_same(apply("ORIQUAT", *found), rotation(quaternion_of(value)))
+    values = random_orientations(6)
+    found = [tuple(apply(f"QUAT{letter}", value) for letter in "ABCD") for value in values]
+    assert found == [quaternion_of(value) for value in values]
+    assert_same([apply("ORIQUAT", *parts) for parts in found], rotation(found))
 
 
 def test_reference_systems_of_three_points():
     rng = np.random.default_rng(7)
-    for origin, matrix in zip(
-        rng.uniform(-1000, 1000, (CASES, 3)), Rotation.random(CASES, random_state=7).as_matrix(), strict=True
-    ):
-        on_x = origin + matrix[:, 0] * rng.uniform(1, 500)
-        in_xy = origin + matrix[:, 0] * rng.uniform(-500, 500) + matrix[:, 1] * rng.uniform(1, 500)
-        found = apply("ORIRS", *(tuple(point.tolist()) for point in (origin, on_x, in_xy)))
-        # Differences of coordinates of a metre have 13 digits.
-        assert (rotation(found).inv() * Rotation.from_matrix(matrix)).magnitude() < 1e-9
+    turns = Rotation.random(CASES, random_state=7)
+    along_x, along_y, _ = np.moveaxis(turns.as_matrix(), 2, 0)
+    origins = rng.uniform(-1000, 1000, (CASES, 3))
+    on_x = origins + along_x * rng.uniform(1, 500, (CASES, 1))
+    in_xy = origins + along_x * rng.uniform(-500, 500, (CASES, 1)) + along_y * rng.uniform(1, 500, (CASES, 1))
+    found = [
+        apply("ORIRS", *map(tuple, points))
+        for points in zip(origins.tolist(), on_x.tolist(), in_xy.tolist(), strict=True)
+    ]
+    # Differences of coordinates of a metre have 13 digits.
+    assert np.max((rotation(found).inv() * turns).magnitude()) < 1e-9
 
 
 NO_VALUE = [

@@ -247,10 +247,11 @@ def test_random_expressions(judge, seed, sane):
 
 
 @pytest.mark.parametrize("type", list(WAYS))
-def test_what_is_well_typed_by_the_tables_is_for_the_check(judge, type):
+@pytest.mark.parametrize("count", [25, pytest.param(250, marks=pytest.mark.slow)])
+def test_what_is_well_typed_by_the_tables_is_for_the_check(judge, type, count):
     """The tables above are a second account of the language: nothing they build is called wrong."""
     expressions = Written(type, 1.0)
-    for _ in range(60):
+    for _ in range(count):
         expression = expressions.of(type, 3)
         node, source = judge.node(expression)
         _, findings = judge.checked(node, source, type.removesuffix(" value"))

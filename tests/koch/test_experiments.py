@@ -19,7 +19,10 @@ NAMES = ["square", "square_limits", "square_speed", "square_accel", "square_cycl
 JOINT_7, JOINT_10, JOINT_11 = 6, 9, 10
 TURNING = np.arange(11) != JOINT_10
 
-every_tick = pytest.mark.parametrize("tick", TICKS)
+FINE = [pytest.param(tick, marks=pytest.mark.slow) for tick in TICKS if tick < 40]
+"""Ticks that take most of the time."""
+
+every_tick = pytest.mark.parametrize("tick", [*FINE, *(tick for tick in TICKS if tick >= 40)])
 every_program = pytest.mark.parametrize("name", NAMES)
 
 
@@ -145,7 +148,7 @@ def test_6_3_without_limits_joint_7_peaks_highest_and_alone_passes_350(experimen
 
 @pytest.mark.req("MOT-20")
 @pytest.mark.parametrize("cell", ["square", "square_weight"])
-@pytest.mark.parametrize("tick", [10, *TICKS])
+@pytest.mark.parametrize("tick", [pytest.param(10, marks=pytest.mark.slow), *FINE, 40, 50, 100])
 def test_6_3_the_limit_holds_at_every_tick_without_slowing(experiment, tick: int, cell: str) -> None:
     run = experiment("square_accel", tick, cell)
     rows = np.degrees(run.q)

@@ -86,7 +86,8 @@ def test_weight_and_limit_can_be_others(command) -> None:
 def test_drawn_where_matplotlib_is(tmp_path, name: str) -> None:
     pytest.importorskip("matplotlib")
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(SOURCE), *sys.path])}
-    arguments = [name, "--joints", "7", "11", "--window", "5", "6.2", "--out", str(tmp_path / "new")]
+    window = ["--joints", "7", "11", "--window", "5", "6.2"]
+    arguments = [name, "--tick", "100", *window, "--out", str(tmp_path / "new")]
     subprocess.run([sys.executable, str(KOCH / "experiments.py"), *arguments], env=environment, check=True)
     picture = tmp_path / "new" / f"experiment_{name.replace('.', '_')}.png"
     assert picture.read_bytes().startswith(b"\x89PNG")

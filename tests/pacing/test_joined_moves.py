@@ -14,6 +14,7 @@ from irlx.blocks import SignalKind as Kind
 from irlx.pacing.executed import Executed
 from irlx.pacing.lookahead import Lookahead
 from irlx.promises import rounding_allowance
+from long_run import first
 
 pytestmark = pytest.mark.req("MOT-06")
 
@@ -226,9 +227,19 @@ def check(kit, seed: int) -> int:
     return sum(executed.rows is not None and executed.rows.path.planned for executed in done)
 
 
-@pytest.mark.parametrize("seed", SEEDS)
+KNOWN: dict[int, int] = {}
+
+
+def checked(kit, seed: int) -> int:
+    """The check of a seed, made once."""
+    if seed not in KNOWN:
+        KNOWN[seed] = check(kit, seed)
+    return KNOWN[seed]
+
+
+@pytest.mark.parametrize("seed", first(14, SEEDS))
 def test_drawn_chains_keep_every_bound(kit, seed) -> None:
-    check(kit, seed)
+    checked(kit, seed)
 
 
 @pytest.mark.slow
@@ -238,7 +249,7 @@ def test_many_drawn_chains_keep_every_bound(kit, seed) -> None:
 
 
 def test_some_drawn_chains_are_slowed(kit) -> None:
-    assert sum(check(kit, seed) for seed in list(SEEDS)[:12]) > 3
+    assert sum(checked(kit, seed) for seed in list(SEEDS)[:12]) > 3
 
 
 def test_settled_blocks_are_the_programs(kit, shop) -> None:

@@ -68,10 +68,10 @@ def assert_even(points):
 @pytest.mark.parametrize(
     ("name", "seeds"),
     [
-        ("arm7", range(24)),
-        ("koch11", range(8)),
-        pytest.param("arm7", range(24, 70), marks=pytest.mark.slow),
-        pytest.param("koch11", range(8, 20), marks=pytest.mark.slow),
+        ("arm7", range(12)),
+        ("koch11", range(5)),
+        pytest.param("arm7", range(12, 70), marks=pytest.mark.slow),
+        pytest.param("koch11", range(5, 20), marks=pytest.mark.slow),
     ],
 )
 def test_random_postures(name, seeds, request):
@@ -94,11 +94,12 @@ def test_random_postures(name, seeds, request):
 
 
 @pytest.mark.req("TRF-15")
-def test_six_joints_with_a_way_to_spare_use_it(arm7):
+@pytest.mark.parametrize("seeds", first(1, [range(16), range(16, 56)]), ids=str)
+def test_six_joints_with_a_way_to_spare_use_it(arm7, seeds):
     """The elbow frozen, between a spherical shoulder and wrist; other joints on their limits now and then."""
     arm, free = arm7, np.arange(7) != 3
     lengths = []
-    for seed in range(40):
+    for seed in seeds:
         rng = np.random.default_rng([seed, 4])
         q, konf = drawn(arm, rng), drawn(arm, rng)
         if seed % 4 == 1:
@@ -108,7 +109,7 @@ def test_six_joints_with_a_way_to_spare_use_it(arm7):
         assert_good(arm, q, konf, free, flow)
         lengths.append(len(flow.points))
     # Joints that are pressed against their limits may hold all the others.
-    assert sum(length > 5 for length in lengths) > 30
+    assert sum(length > 5 for length in lengths) > 0.75 * len(lengths)
 
 
 @pytest.mark.req("TRF-15")
@@ -148,9 +149,10 @@ def test_nothing_moves_towards_the_present_posture(arm, residue):
     assert flow.points[0].tobytes() == arm.q.tobytes()
 
 
-def test_the_end_does_not_depend_on_the_qp_solver(arm):
+@pytest.mark.parametrize("count", [2, pytest.param(8, marks=pytest.mark.slow)])
+def test_the_end_does_not_depend_on_the_qp_solver(arm, count):
     rng = np.random.default_rng(21)
-    for _ in range(5):
+    for _ in range(count):
         konf = drawn(arm, rng, 1.2)
         one, other = (flow_of(arm, arm.q, konf, qp=qp) for qp in (DualSolver(), ProxQpSolver()))
         assert np.max(np.abs(one.points[-1] - other.points[-1])) <= 1e-8

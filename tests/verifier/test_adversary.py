@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import os
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -46,10 +47,10 @@ from irlx.verifier.geometry.forward import forward
 pytestmark = pytest.mark.req("STR-06")
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def make(tmp_path_factory) -> Make:
-    """Runs a program of some statements, each in its own folder."""
-    return lambda *texts: job(tmp_path_factory.mktemp("job"), *texts)
+    """Runs a program of some statements, each in its own folder and once."""
+    return cache(lambda *texts: job(tmp_path_factory.mktemp("job"), *texts))
 
 
 def names(report: Report) -> set[str]:
