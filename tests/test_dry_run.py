@@ -14,7 +14,7 @@ from irlx.cli.main import main
 from irlx.dry_run import dry_run
 from irlx.job import prepare
 from irlx.pipeline import Execution
-from long_run import first
+from long_run import first, portions
 
 SEEDS, LONG = range(200, 215), range(2000, 2300)
 SLOW = """PROGRAM slow;
@@ -90,9 +90,11 @@ def test_drawn_programs_have_the_errors_of_their_runs(tmp_path, seed) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", LONG)
-def test_many_drawn_programs_have_the_errors_of_their_runs(tmp_path, seed) -> None:
-    agree(tmp_path, seed)
+@pytest.mark.parametrize("seeds", portions(LONG), ids=str)
+def test_many_drawn_programs_have_the_errors_of_their_runs(tmp_path, seeds) -> None:
+    for seed in seeds:
+        print("seed", seed)
+        agree(tmp_path, seed)
 
 
 def test_it_takes_a_fifth_of_the_time_of_the_motion(tmp_path) -> None:

@@ -13,7 +13,7 @@ import pytest
 
 import irlx
 from drawn_programs import KINDS, MIXED, write_program
-from long_run import first
+from long_run import first, portions
 
 QUICK, LONG = range(24), range(1000, 2000)
 REFUSALS = {
@@ -57,9 +57,11 @@ def test_drawn_programs(tmp_path, seed) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", LONG)
-def test_many_drawn_programs(tmp_path, seed) -> None:
-    outcome(tmp_path, seed)
+@pytest.mark.parametrize("seeds", portions(LONG), ids=str)
+def test_many_drawn_programs(tmp_path, seeds) -> None:
+    for seed in seeds:
+        print("seed", seed)
+        outcome(tmp_path, seed)
 
 
 @pytest.fixture(scope="module")
@@ -80,6 +82,8 @@ def test_some_of_them_are_joined(joined) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", LONG)
-def test_many_drawn_programs_of_ptps_beside_paths(tmp_path, seed) -> None:
-    outcome(tmp_path, seed, MIXED)
+@pytest.mark.parametrize("seeds", portions(LONG), ids=str)
+def test_many_drawn_programs_of_ptps_beside_paths(tmp_path, seeds) -> None:
+    for seed in seeds:
+        print("seed", seed)
+        outcome(tmp_path, seed, MIXED)

@@ -168,7 +168,7 @@ def test_obstacles_that_are_seen_are_where_they_are_seen(seed):
     pairs = watched_pairs(arm, obstacles, None)
     found, q = Distances(arm, pairs, sightings), np.zeros(arm.joints)
     seen: list[dict[str, pin.SE3]] = [{}, {}]
-    for tick in range(150):
+    for tick in range(90):
         sightings.begin_tick()
         seen = [seen[1], dict(seen[1])]
         for name in ("O1", "o2", "o6", "Goes"):

@@ -15,6 +15,11 @@ def first(count: int, cases: Iterable[object]) -> list[object]:
     ]
 
 
+def portions(seeds: range, size: int = 20) -> list[range]:
+    """The seeds of a long campaign, some at a time: a test for each would cost every run its collection."""
+    return [seeds[start : start + size] for start in range(0, len(seeds), size)]
+
+
 def chequered(rows: list, columns: Iterable[object]) -> list[object]:
     """All pairs of a row, a `pytest.param` with an id, and a column; every other pair is marked slow.
 

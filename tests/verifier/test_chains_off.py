@@ -285,7 +285,7 @@ def test_a_stream_that_breaks_off_is_judged_as_far_as_it_goes(gantry_kit, robot)
         assert "path position" in {check.name for check in verify_stream(worse, robot).failed}
 
 
-@pytest.mark.parametrize("portion", [pytest.param(1, marks=pytest.mark.slow), 7, 64])
+@pytest.mark.parametrize("portion", [*(pytest.param(size, marks=pytest.mark.slow) for size in (1, 7)), 16])
 def test_portions_do_not_matter(portion: int, gantry_kit, robot, monkeypatch) -> None:
     from irlx.verifier import rows
 
