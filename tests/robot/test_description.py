@@ -12,9 +12,11 @@ import numpy as np
 import pytest
 
 from irlx.promises import rounding_allowance
+from irlx.robot import urdf
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
 from irlx.robot.urdf import read_urdf
+from irlx.robot.urdf_values import RobotModelError
 
 TEXT = """<robot name="two"><link name="a"/><link name="b"/><link name="c"/><link name="d"/>
 <joint name="j1" type="revolute"><parent link="a"/><child link="b"/><origin xyz="0 0 1"/><axis xyz="0 0 1"/>
@@ -136,3 +138,20 @@ def test_the_lever_leaves_out_the_strokes_that_carry_the_first_turning_axis() ->
     assert on_rail.lever == pytest.approx(own.lever)
     only_slides = read_urdf(TEXT.replace('type="revolute"', 'type="prismatic"'))
     assert only_slides.lever == only_slides.reach == pytest.approx(5.0 + 2.0 + 0.5 + 1.0)
+
+
+def test_a_text_is_taken_apart_once_and_its_robots_share_nothing_that_changes(monkeypatch) -> None:
+    read = []
+    taken_apart = urdf.ET.fromstring
+    monkeypatch.setattr(urdf.ET, "fromstring", lambda text: read.append(text) or taken_apart(text))
+    text = TEXT.replace("two", "once")
+    first = read_urdf(text)
+    first.inertials.clear()
+    first.solids["a"] = ()
+    locked = read_urdf(text, tip="c", locked={"j2": 0.1})
+    assert (locked.tip, locked.locked, dict(locked.solids)) == ("c", {"j2": 0.1}, {})
+    assert read == [text]
+    broken = text.replace("revolute", "turning")
+    for _ in range(2):
+        with pytest.raises(RobotModelError, match="turning"):
+            read_urdf(broken)
