@@ -64,12 +64,13 @@ def slowed(_: Path) -> Work:
 
 
 def beside_obstacles(_: Path) -> Work:
-    """Lines of arm7 there and back at 1 kHz beside ten balls that it feels."""
+    """Lines of arm7 there and back in ticks of 4 ms beside ten balls that it feels: 540 ticks."""
     from balls import felt
     from chains import arm7, there_and_back
 
     arm = arm7()
-    return partial(there_and_back, arm, TICK, obstacles=felt(arm, there_and_back(arm, TICK), 10))
+    balls = felt(arm, there_and_back(arm, TICK), 10)
+    return partial(there_and_back, arm, 4.0 * TICK, obstacles=balls)
 
 
 def writing(folder: Path, ending: str) -> Work:
