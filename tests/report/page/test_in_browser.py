@@ -17,15 +17,6 @@ def shown(made, open_page):
 
 
 @pytest.mark.req("REP-04")
-def test_it_asks_for_itself_alone(made, open_page):
-    path = made()
-    with open_page(path, still=False) as page:
-        page.page.wait_for_timeout(300)
-        asked = [url for url in page.requests if not url.startswith("data:")]
-    assert asked == [path.as_uri() + "#t=0"] or asked == [path.as_uri()]
-
-
-@pytest.mark.req("REP-04")
 def test_the_slider_moves_the_tool(shown):
     truth = tool_poses()
     for frame in (0, 1, 49, 50, 73, FRAMES - 1):
@@ -233,12 +224,17 @@ def test_small_variant(made, open_page):
         assert page.run("() => document.documentElement.scrollHeight") <= 420
 
 
-def test_it_plays_by_itself_only_where_motion_is_welcome(made, open_page):
-    with open_page(made(), where="") as page:
+@pytest.mark.req("REP-04")
+def test_where_motion_is_welcome_it_plays_by_itself_and_asks_for_itself_alone(made, open_page):
+    path = made()
+    with open_page(path, where="") as page:
         page.page.wait_for_timeout(200)
         assert page.run("() => irlx.frame") == 0
-    with open_page(made(), still=False, where="") as page:
+    with open_page(path, still=False, where="") as page:
+        page.page.wait_for_timeout(300)
         page.page.wait_for_function("() => irlx.frame > 3")
+        asked = [url for url in page.requests if not url.startswith("data:")]
+    assert asked == [path.as_uri()]
 
 
 def test_the_time_of_the_address_goes_with_it(made, open_page):
