@@ -14,6 +14,7 @@ import irlx
 from irlx.promises import rounding_allowance
 from irlx.verification import verify
 from kept_runs import kept_report, kept_run
+from long_run import chequered
 
 pytestmark = pytest.mark.req("MOT-06")
 
@@ -267,9 +268,15 @@ def test_a_dry_run_takes_them_as_stops(arm) -> None:
     assert [one.code for one in found if one.code in ("IRL432", "IRL436")] == []
 
 
-@pytest.mark.parametrize("tick", [4.0, 10.0, 20.0])
 @pytest.mark.parametrize(
-    "behind", ["MOVE_INC SPLINE PATH ({0}, {1}, {2});", "MOVE_INC LIN {0};\nMOVE_INC LIN {1};"]
+    ("behind", "tick"),
+    chequered(
+        [
+            pytest.param("MOVE_INC SPLINE PATH ({0}, {1}, {2});", id="a spline"),
+            pytest.param("MOVE_INC LIN {0};\nMOVE_INC LIN {1};", id="lines"),
+        ],
+        [4.0, 10.0, 20.0],
+    ),
 )
 def test_a_line_that_is_all_corner_is_judged(tmp_path, tick: float, behind: str) -> None:
     """Half of it belongs to the corner to the PTP, half to the blend behind it: hardly a row is on it."""

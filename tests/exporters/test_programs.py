@@ -11,6 +11,7 @@ from arm_streams import arm_stream, there_and_back
 from controller_programs import SyntaxFault, read_krl, read_rapid, read_robodk, read_urscript
 from irlx.exporters import TARGETS
 from irlx.streams import JointStream
+from long_run import first
 
 GOLDEN = Path(__file__).parent / "golden"
 CLOSE = 1e-9
@@ -122,7 +123,7 @@ def test_gaps_are_time(target: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("target", TARGETS)
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", first(3, range(6)))
 def test_any_values_read_back(target: str, seed: int, tmp_path: Path) -> None:
     print("seed", seed)
     rng = np.random.default_rng(seed)
