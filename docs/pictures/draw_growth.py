@@ -120,15 +120,16 @@ def fill(axes: Axes, panel: Panel, stored: Mapping[str, Any]) -> None:
         spans.append((x.min(), x.max(), y.min(), y.max()))
     starts, ends, lows, highs = zip(*spans, strict=True)
     left, right, low, high = min(starts), max(ends), min(lows), max(highs)
-    # Twice as long for twice as much.
-    axes.plot([left, right], [low, low * right / left], "--", color=GUIDE, linewidth=0.8, zorder=1)
+    if "|" not in panel.x:
+        # Twice as long for twice as much.
+        axes.plot([left, right], [low, low * right / left], "--", color=GUIDE, linewidth=0.8, zorder=1)
     decades = np.log10(high / low)
     axes.set_ylim(low * 10 ** (-0.08 * decades), high * 10 ** (ROOM * max(decades, 0.6)))
     axes.set_title(panel.title, fontsize=10.0, loc="left")
     axes.set_xlabel(panel.x)
     axes.set_ylabel(panel.y)
     axes.grid(linewidth=0.3, color="#d8d8d8")
-    plain = FuncFormatter(lambda value, _: f"{value:,g}")
+    plain = FuncFormatter(lambda value, _: f"{value / 1000:g}k" if value >= 10_000 else f"{value:,g}")
     axes.xaxis.set_major_formatter(plain)
     axes.yaxis.set_major_formatter(plain)
     if decades < 2.0:
