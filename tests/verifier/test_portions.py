@@ -11,8 +11,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from irlx.streams import scan_of, write_stream
+from irlx.streams.error import StreamError
 from irlx.streams.formats import scan_stream
-from irlx.verifier import Reference, rows, verify_scans, verify_stream
+from irlx.streams.scan import RowBatch
+from irlx.verifier import Reference, remembered, rows, verify_scans, verify_stream
 from irlx.verifier.outline import outline_of
 
 
@@ -108,9 +110,10 @@ def long_stream(kit, rounds: int):
 
 @pytest.mark.req("STR-06")
 @pytest.mark.parametrize("ending", [".irdata", ".npz", pytest.param(".csv", marks=pytest.mark.slow)])
-def test_memory_does_not_grow_with_the_stream(ending, kit, tmp_path):
+def test_memory_does_not_grow_with_the_stream(ending, kit, tmp_path, monkeypatch):
     import tracemalloc
 
+    monkeypatch.setattr(remembered, "MOST", 1 << 20)
     peaks = []
     for rounds in (3, 5):
         path = tmp_path / f"{rounds}{ending}"
@@ -124,6 +127,54 @@ def test_memory_does_not_grow_with_the_stream(ending, kit, tmp_path):
         assert report.passed, report
     # 12,000 rows more are 1.3 MB of joint values and tool poses alone.
     assert peaks[1] - peaks[0] < 4e5, peaks
+
+
+@pytest.mark.req("STR-06")
+@pytest.mark.parametrize("most", [0, 10_000, 1 << 30])
+@pytest.mark.parametrize("cut", [False, True])
+def test_a_stream_is_read_once_where_it_can_be_kept(most, cut, kit, tmp_path, monkeypatch):
+    """However often it is read, the report is the same, also that of a file that was cut."""
+    path = tmp_path / "busy.irdata"
+    write_stream(busy(kit), path)
+    if cut:
+        path.write_bytes(path.read_bytes()[:-30])
+    begun = []
+
+    def scans():
+        begun.append(path)
+        return scan_stream(path)
+
+    monkeypatch.setattr(remembered, "MOST", most)
+    report = verify_scans(scans, Reference(kit.ROBOT), "busy", None, True)
+    assert len(begun) == (1 if most > 1 << 20 else 2)
+    assert report.passed is not cut
+    assert str(report) == str(
+        verify_scans(partial(scan_stream, path), Reference(kit.ROBOT), "busy", None, True)
+    )
+
+
+@pytest.mark.parametrize("most", [10_000, 1 << 30])
+def test_a_scan_that_was_given_up_is_not_taken_for_a_whole_one(most, kit, monkeypatch):
+    monkeypatch.setattr(remembered, "MOST", most)
+    scans = remembered.Remembered(partial(scan_of, busy(kit)))
+    next(scans())
+    for _ in range(2):
+        assert sum(len(item[0]) for item in scans() if isinstance(item, RowBatch)) == len(busy(kit).ticks)
+
+
+def test_damage_is_met_again_behind_the_rows_before_it(kit, tmp_path):
+    path = tmp_path / "busy.csv"
+    write_stream(busy(kit), path)
+    path.write_bytes(path.read_bytes()[:-30] + b"\n")
+    scans = remembered.Remembered(partial(scan_stream, path))
+    first, again = [], []
+    with pytest.raises(StreamError) as read:
+        first.extend(scans())
+    with pytest.raises(StreamError) as kept:
+        again.extend(scans())
+    assert read.value.reason == kept.value.reason
+    assert [type(item) for item in first] == [type(item) for item in again]
+    assert len(first) > 1
 
 
 def test_an_outline_has_what_the_stream_has(kit):

@@ -226,7 +226,7 @@ def _tool(situation: Situation, paced: PacedPath) -> tuple[Array, Array, Array, 
         rotation, position = asked if in_world else kinematics.world.tool_poses(paced.q)
         return nothing, nothing, position, rotation
     rotation, position = kinematics.tool_poses(paced.q)
-    distance, angle = kinematics.errors(paced.q, asked)
+    distance, angle = kinematics.errors(paced.q, asked, (rotation, position))
     if not in_world:
         rotation, position = kinematics.world.tool_poses(paced.q)
     return distance, angle, position, rotation

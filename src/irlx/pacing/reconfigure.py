@@ -152,7 +152,7 @@ def _motion_rows(
     start_rotation, start_position = kinematics.tool_pose(q)
     rotation, position = kinematics.tool_poses(held)
     wanted = np.tile(start_rotation, (len(held), 1, 1)), np.tile(start_position, (len(held), 1))
-    distance, angle = kinematics.errors(held, wanted)
+    distance, angle = kinematics.errors(held, wanted, (rotation, position))
     if kinematics.world is not kinematics:
         rotation, position = kinematics.world.tool_poses(held)
     return MotionRows(

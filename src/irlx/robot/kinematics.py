@@ -202,10 +202,13 @@ class Kinematics:
         """Rotations (N, 3, 3) and positions (N, 3) m of the tool frame at the postures q (N, n)."""
         rotation, position = np.empty((len(q), 3, 3)), np.empty((len(q), 3))
         model, data, tip = self.model, self.data, self._tip_frame
+        forward, place = pin.forwardKinematics, pin.updateFramePlacement
+        # Views of what is written at each row: to ask for them anew costs as much as the kinematics.
+        turned, placed = data.oMf[tip].rotation, data.oMf[tip].translation
         for k, row in enumerate(self.expanded(q)):
-            pin.forwardKinematics(model, data, row)
-            pose = pin.updateFramePlacement(model, data, tip)
-            rotation[k], position[k] = pose.rotation, pose.translation
+            forward(model, data, row)
+            place(model, data, tip)
+            rotation[k], position[k] = turned, placed
         return rotation, position
 
     def difference(self, q: Array, target: pin.SE3) -> tuple[Array, Array]:
@@ -326,13 +329,17 @@ class Kinematics:
             found[k] = self.data.oMi[joint].rotation @ within
         return found
 
-    def errors(self, q: Array, wanted: tuple[Array, Array]) -> tuple[Array, Array]:
+    def errors(
+        self, q: Array, wanted: tuple[Array, Array], reached: tuple[Array, Array] | None = None
+    ) -> tuple[Array, Array]:
         """Distance (N,) m and angle (N,) rad between the poses of postures q (N, n) and those wanted.
 
-        Wanted are rotations (N, 3, 3) and positions (N, 3); what counts are the coordinates of the task.
+        Poses are rotations (N, 3, 3) and positions (N, 3), those `reached` what `tool_poses` gives of q, if
+        it is known already; what counts are the coordinates of the task.
         """
+        reached = self.tool_poses(q) if reached is None else reached
         frames = None if self.task.is_whole or self._frame is None else self.task_frames(q)
-        return pose_errors(self.task, wanted, self.tool_poses(q), frames)
+        return pose_errors(self.task, wanted, reached, frames)
 
     def left_of(self, task: Task, q: Array, target: pin.SE3) -> Array:
         """What is left from posture q to a target in the coordinates of some task, in the task's frame."""

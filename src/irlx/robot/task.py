@@ -10,6 +10,7 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from irlx.robot.description import COORDINATES
+from irlx.robot.twists import angles_between
 
 Array = NDArray[np.float64]
 
@@ -101,11 +102,11 @@ def pose_errors(
     Poses are stacks of rotations (N, 3, 3) and positions (N, 3); `frames` (N, 3, 3) are the rotations of the
     frames that the coordinates are in, those reached where they are the tool's own.
     """
+    if task.is_whole:
+        return np.linalg.norm(wanted[1] - reached[1], axis=1), angles_between(reached[0], wanted[0])
     from scipy.spatial.transform import Rotation
 
     turn = Rotation.from_matrix(np.swapaxes(reached[0], 1, 2) @ wanted[0])
-    if task.is_whole:
-        return np.linalg.norm(wanted[1] - reached[1], axis=1), turn.magnitude()
     seen = reached[0] if frames is None else frames
     away = np.einsum("nji,nj->ni", seen, wanted[1] - reached[1])
     vectors = turn.as_rotvec()

@@ -45,6 +45,13 @@ def twists_between(poses: RowsLast, targets: RowsLast) -> Array:
     return found
 
 
+def angles_between(rotations: Array, others: Array) -> Array:
+    """Angles (N,) rad by which rotations (N, 3, 3) differ from as many others, exact where they hardly do."""
+    one, other = (np.ascontiguousarray(of.transpose(1, 2, 0)) for of in (rotations, others))
+    axial, cosine = _axial(one, other)
+    return np.asarray(np.arctan2(np.sqrt(np.einsum("an,an->n", axial, axial)), cosine))
+
+
 def _axial(rotation: Array, target: Array) -> tuple[Array, Array]:
     """r (3, N) and c (N,) of R = rotation' target, by its rows x, y: sums of y x x and y . x, halved."""
     axial = _cross(target.swapaxes(0, 1), rotation.swapaxes(0, 1)).sum(axis=1)

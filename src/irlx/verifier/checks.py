@@ -28,6 +28,7 @@ from irlx.verifier.judges.stillness import FrozenChecks, StopChecks, WaitChecks
 from irlx.verifier.judges.tool_moves import ToolMoveChecks
 from irlx.verifier.moves import check_blocks
 from irlx.verifier.outline import Outline, Scans, check_complete, check_finite, check_ticks, outline_of
+from irlx.verifier.remembered import Remembered
 from irlx.verifier.rows import Rows, rows_of
 
 ProgramCheck = Callable[[Outline], Check]
@@ -129,6 +130,7 @@ def verify_scans(
     'file'; raises StreamError where there is no file to read. Only a stream that `may_lack_blocks`, its
     format having no place for them, may have none.
     """
+    scans = Remembered(scans)
     try:
         outline = outline_of(scans)
     except StreamError as error:

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-import numpy as np
-
-from irlx.robot.description import JointKind, RobotDescription
+from irlx.robot.description import RobotDescription
 from irlx.streams.joint_stream import Floats
-from irlx.verifier.geometry.forward import after_joint, values_of
+from irlx.verifier.geometry.forward import ROOT, RowsLast, after_joint, held_at, rows_first, values_of
 
 Poses = tuple[Floats, Floats]
 """Positions (N, 3) m and rotations (N, 3, 3), or (1, 3) and (1, 3, 3) of what rests."""
@@ -21,25 +19,15 @@ def link_poses(robot: RobotDescription, q: Floats, links: Collection[str]) -> di
     """
     told = values_of(robot, q)
     parents = {joint.child: joint for joint in robot.joints}
-    found: dict[str, Poses] = {robot.root: (np.zeros((1, 3)), np.eye(3)[None])}
+    found: dict[str, RowsLast] = {robot.root: ROOT}
 
-    def pose(link: str) -> Poses:
+    def pose(link: str) -> RowsLast:
         if link not in found:
             joint = parents[link]
-            position, rotation = pose(joint.parent)
-            moves = joint.name in told
-            values = told[joint.name] if moves else np.array([robot.locked.get(joint.name, 0.0)])
-            if joint.kind is JointKind.FIXED:
-                values = np.zeros(1)
-            if moves and len(position) == 1 and len(values) != 1:
-                position = np.repeat(position, len(values), axis=0)
-                rotation = np.repeat(rotation, len(values), axis=0)
-            elif not moves:
-                values = np.repeat(values, len(position))
-            found[link] = after_joint(joint, values, position, rotation)
+            found[link] = after_joint(joint, told.get(joint.name, held_at(robot, joint)), pose(joint.parent))
         return found[link]
 
-    return {link: pose(link) for link in links}
+    return {link: rows_first(pose(link)) for link in links}
 
 
 def moved_links(robot: RobotDescription) -> frozenset[str]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from irlx.streams.joint_stream import Floats
@@ -20,10 +22,16 @@ def about_axis(axis: Floats, angles: Floats) -> Floats:
     return np.eye(3) + np.sin(angles)[:, None, None] * k + (2.0 * half * half)[:, None, None] * (k @ k)
 
 
+@lru_cache(maxsize=1024)
 def from_rpy(rpy: tuple[float, float, float]) -> Floats:
-    """Rz(yaw) Ry(pitch) Rx(roll), shape (3, 3), of turns about the fixed axes x, y, z, rad."""
+    """Rz(yaw) Ry(pitch) Rx(roll), shape (3, 3), of turns about the fixed axes x, y, z, rad.
+
+    Not to be changed: each is made once, a robot's joints having the same ones in all portions of rows.
+    """
     turns = [about_axis(axis, np.array([angle]))[0] for axis, angle in zip(np.eye(3), rpy, strict=True)]
-    return np.asarray(turns[2] @ turns[1] @ turns[0])
+    found: Floats = turns[2] @ turns[1] @ turns[0]
+    found.setflags(write=False)
+    return found
 
 
 def from_quaternion(xyzw: Floats) -> Floats:
