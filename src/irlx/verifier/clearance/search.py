@@ -9,13 +9,18 @@ import numpy as np
 from irlx.streams.joint_stream import Floats, Integers
 from irlx.verifier.clearance.pairs import Meeting
 from irlx.verifier.distances.between import displacement, distances, slab
+from irlx.verifier.distances.body import HalfspaceBody
+from irlx.verifier.distances.placed import unit
 from irlx.verifier.distances.separation import Gaps
 
 NEAREST_WITHIN = 1e-6
 """The smallest clearance that is told is at most this much above the true one, m."""
 
-_APART = 32
-"""Rows between those that are measured first."""
+_APART = (512, 64, 8)
+"""Rows between those that are measured first, and between those of what that leaves."""
+
+_SLABS_APART = 64
+"""Rows between those in which slabs are looked for before anything is measured."""
 
 
 class Measured(NamedTuple):
@@ -38,33 +43,19 @@ def near_rows(meeting: Meeting, rows: Integers, allowed: Floats, tolerance: floa
     """Those of `rows` (K,), in order, that matter, with their distances.
 
     A row matters where the distance may be below `allowed` (K,) by more than `tolerance`, or below it by more
-    than `worst` (m, negative where all is well) and `NEAREST_WITHIN`. Others are left out, by three bounds
-    from below: that of a ball around one body; the distance in a row near by less the way of any point of the
-    body since; the empty slab between the bodies across the direction of that distance.
+    than `worst` (m, negative where all is well) and `NEAREST_WITHIN`. Others are left out, by bounds from
+    below: that of a ball around one body; what a row near by has, less the way of any point of the body
+    since, first the empty slab across the line between the centres, then the distance; the empty slab across
+    the direction of that distance. Rows near by are few at first, and more among those that this leaves.
     """
     search = _Search(meeting, rows, allowed, tolerance, worst)
     left = search.mattering(np.arange(len(rows)), meeting.least[rows])
-    if not left.size:
-        return search.result()
-    # The likeliest row first: it tells how much the others have to be nearer.
-    search.measure(left[np.argmin((meeting.least[rows] - allowed)[left])][None])
-    left = search.mattering(left, meeting.least[rows[left]])
-    place = np.arange(len(left))
-    anchors = left[np.minimum(place[::_APART] + _APART // 2, len(left) - 1)]
-    if not anchors.size:
-        return search.result()
-    found = search.measure(anchors)
-    anchor = place // _APART
-    positions, rotations = meeting.at(rows[left])
-    from_anchor = tuple(pose[anchor] for pose in meeting.at(rows[anchors]))
-    moved = displacement(meeting.second, positions, rotations, *from_anchor)
-    kept = search.mattering(place, found.lower[anchor] - moved, left)
-    kept = kept[~np.isin(left[kept], anchors)]
-    direction = found.direction[anchor[kept]]
-    width = slab(meeting.first, meeting.second, positions[kept], rotations[kept], direction)
-    on = search.mattering(np.arange(len(kept)), width, left[kept])
-    if on.size:
-        search.measure(left[kept[on]], direction[on])
+    left = search.between_centres(left)
+    direction = np.zeros((0, 3))
+    for apart in _APART:
+        left, direction = search.ruled_out(left, apart)
+    if left.size:
+        search.measure(left, direction)
     return search.result()
 
 
@@ -94,6 +85,45 @@ class _Search:
         self._worst = max(self._worst, float(np.max(beyond)))
         return found
 
+    def between_centres(self, left: Integers) -> Integers:
+        """Those of rows at places `left` (K,) that may still matter behind slabs between the centres."""
+        if not left.size or isinstance(self._meeting.first, HalfspaceBody):
+            return left
+        anchor, anchors = _every(len(left), _SLABS_APART)
+        towards = unit(self._meeting.centres[self._rows[left[anchors]]] - self._meeting.first.centre)
+        width = self._slabs(left[anchors], towards)
+        return left[self._near(left, anchor, left[anchors], width)]
+
+    def ruled_out(self, left: Integers, apart: int) -> tuple[Integers, Floats]:
+        """Those of rows at places `left` (K,) that may still matter when every so many of them is measured,
+        and directions (L, 3) across which both bodies lie in the row next to each that is."""
+        if not left.size:
+            return left, np.zeros((0, 3))
+        anchor, anchors = _every(len(left), apart)
+        # The likeliest row with them: it tells how much the others have to be nearer.
+        likeliest = np.argmin(self._meeting.least[self._rows[left]] - self._allowed[left])
+        measured = np.append(anchors, likeliest)
+        found = self.measure(left[measured])
+        kept = self._near(left, anchor, left[anchors], found.lower[:-1])
+        kept = kept[~np.isin(kept, measured)]
+        direction = found.direction[anchor[kept]]
+        on = self.mattering(np.arange(len(kept)), self._slabs(left[kept], direction), left[kept])
+        return left[kept[on]], direction[on]
+
+    def _near(self, left: Integers, anchor: Integers, anchors: Integers, lower: Floats) -> Integers:
+        """Which of K rows at places `left` may still matter, the distance at `anchors` (A,) being at least
+        `lower` (A,): it is less by the way since at most. `anchor` (K,) tells which is near each."""
+        rows, meeting = self._rows, self._meeting
+        here, there = meeting.at(rows[left]), meeting.at(rows[anchors])
+        moved = displacement(meeting.second, *here, *(pose[anchor] for pose in there))
+        return self.mattering(np.arange(len(left)), lower[anchor] - moved, left)
+
+    def _slabs(self, places: Integers, directions: Floats) -> Floats:
+        """Widths (M,) of the empty slabs across unit directions (M, 3); of those that are none no bound."""
+        meeting = self._meeting
+        width = slab(meeting.first, meeting.second, *meeting.at(self._rows[places]), directions)
+        return np.where(directions.any(axis=1), width, -np.inf)
+
     def result(self) -> Measured:
         """All of it, every row once."""
         if not self._found:
@@ -101,6 +131,12 @@ class _Search:
         places, upper = (np.concatenate(part) for part in zip(*self._found, strict=True))
         places, once = np.unique(places, return_index=True)
         return Measured(self._rows[places], upper[once])
+
+
+def _every(count: int, apart: int) -> tuple[Integers, Integers]:
+    """Which one (count,) of some places is near each, and these places, every so many of `count`."""
+    place = np.arange(count)
+    return place // apart, np.minimum(place[::apart] + apart // 2, count - 1)
 
 
 def _measured(meeting: Meeting, rows: Integers, start: Floats | None = None) -> Gaps:
