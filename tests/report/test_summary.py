@@ -33,10 +33,16 @@ def by_brute_force(values: np.ndarray, lower: np.ndarray, upper: np.ndarray, abo
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_limit_use_is_the_largest_share_of_any_joint_at_any_tick(seed: int) -> None:
+@pytest.mark.parametrize("alike", [False, True])
+def test_limit_use_is_the_largest_share_of_any_joint_at_any_tick(seed: int, alike: bool) -> None:
     rng = np.random.default_rng(seed)
     q, qd, qdd = rng.uniform(-1.0, 1.0, (3, 30, 4))
     bounds = limits(seed)
+    if alike:
+        # Few values, the same bounds for all: of equal shares the first one counts.
+        q, qd, qdd = np.round(q, 1), np.round(qd, 1), np.zeros_like(qdd)
+        one = np.ones(4)
+        bounds = JointLimits(-one, one, -2 * one, 2 * one, -one, one)
     uses = limit_uses(q, qd, qdd, bounds, NAMES)
     assert [use.kind for use in uses] == ["position", "speed", "acceleration"]
     for use, values in zip(uses, (q, qd, qdd), strict=True):

@@ -114,23 +114,31 @@ def limit_uses(
 def _worst(
     kind: str, values: Array, lower: Array, upper: Array, middle: Array, joint_names: Sequence[str]
 ) -> LimitUse | None:
-    above = values >= middle
-    room = np.where(above, upper - middle, middle - lower)
-    way = np.abs(values - middle)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        share = np.where(np.isfinite(room), np.where(room > 0.0, way / room, (way > 0.0).astype(float)), 0.0)
     if not np.any(np.isfinite(lower) | np.isfinite(upper)):
         return None
-    tick, joint = np.unravel_index(int(np.argmax(share)), share.shape)
-    bound = upper[joint] if above[tick, joint] else lower[joint]
-    return LimitUse(
-        kind,
-        joint_names[int(joint)],
-        float(values[tick, joint]),
-        float(bound),
-        float(share[tick, joint]),
-        int(tick),
+    # A share grows with the way from the middle: of each joint and side only the furthest value can be it.
+    above = values.max(axis=0), _share(values.max(axis=0) - middle, upper - middle), upper
+    below = values.min(axis=0), _share(middle - values.min(axis=0), middle - lower), lower
+    largest = max(float(share.max()) for _, share, _ in (above, below))
+    if largest <= 0.0:
+        bound = upper if values[0, 0] >= middle[0] else lower
+        return LimitUse(kind, joint_names[0], float(values[0, 0]), float(bound[0]), 0.0, 0)
+    tick, joint, bound = min(
+        (
+            (int(np.argmax(values[:, joint] == furthest[joint])), joint, bound)
+            for furthest, share, bound in (above, below)
+            for joint in np.flatnonzero(share == largest).tolist()
+        ),
+        key=lambda place: place[:2],
     )
+    return LimitUse(kind, joint_names[joint], float(values[tick, joint]), float(bound[joint]), largest, tick)
+
+
+def _share(way: Array, room: Array) -> Array:
+    """Share (n,) of the room that a way from the middle takes: 1 where there is none, 0 without limit."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        share = np.where(room > 0.0, way / room, (way > 0.0).astype(np.float64))
+    return np.where(np.isfinite(room) & (way > 0.0), share, 0.0)
 
 
 def closure(q: Array, tool: Array, joint_names: Sequence[str], tolerance: float) -> Closure | None:
