@@ -39,13 +39,17 @@ def from_quaternion(xyzw: Floats) -> Floats:
 
     Quaternions of another length give matrices that are no rotations, and show as such.
     """
-    x, y, z, w = np.moveaxis(xyzw, -1, 0)
+    x, y, z, w = np.ascontiguousarray(np.moveaxis(xyzw, -1, 0))
     rows = [
         [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
         [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
         [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
     ]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    found = np.empty((*x.shape, 3, 3))
+    for i, row in enumerate(rows):
+        for j, value in enumerate(row):
+            found[..., i, j] = value
+    return found
 
 
 def angle_between(first: Floats, second: Floats) -> Floats:
@@ -53,7 +57,8 @@ def angle_between(first: Floats, second: Floats) -> Floats:
 
     The Frobenius norm keeps full relative accuracy for small angles, where the trace does not.
     """
-    distance = np.sqrt(np.sum((first - second) ** 2, axis=(-2, -1)))
+    apart = first - second
+    distance = np.sqrt(np.einsum("...ij,...ij->...", apart, apart))
     return np.asarray(2.0 * np.arcsin(np.minimum(distance / np.sqrt(8.0), 1.0)))
 
 

@@ -114,6 +114,8 @@ class ToolChecks:
             if not same or angle_between(turned, self._own[1][0]) > TOOL_ORIENTATION:
                 self._own = tool
                 self._changes += 1
+        if not self._changes:
+            return tips
         return tips[0] + tips[1] @ self._own[0][0], tips[1] @ self._own[1][0]
 
     def checks(self) -> list[Check]:
