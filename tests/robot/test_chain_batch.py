@@ -10,7 +10,7 @@ from irlx.blocks.link_frame import LinkFrame
 from irlx.cell.packaged import packaged_urdf
 from irlx.robot.chain_batch import ChainBatch
 from irlx.robot.kinematics import Kinematics
-from irlx.robot.twists import twists_between
+from irlx.robot.twists import angles_between, twists_between
 from irlx.robot.urdf import read_urdf
 from led_joints import CASES, coupled
 
@@ -124,3 +124,13 @@ def test_twists_are_those_of_log6(size: float) -> None:
     assert np.max(np.abs(found - wanted)) < allowed
     theirs = np.array([pin.log6(a.actInv(b)).vector for a, b in zip(poses, goals, strict=True)])
     assert np.max(np.abs(found - theirs)) < allowed
+
+
+@pytest.mark.parametrize("size", [0.0, 1e-16, 1e-9, 1e-3, 1.0, 3.0, np.pi])
+def test_angles_are_those_turned_by(size: float) -> None:
+    rng = np.random.default_rng(3)
+    axes = rng.normal(size=(50, 3))
+    axes /= np.linalg.norm(axes, axis=1)[:, None]
+    rotations = np.array([pin.SE3.Random().rotation for _ in axes])
+    others = np.array([turn @ pin.exp3(size * axis) for turn, axis in zip(rotations, axes, strict=True)])
+    assert np.max(np.abs(angles_between(rotations, others) - size)) < 1e-14
