@@ -26,8 +26,9 @@ from irlx.language.builtins import (
     TYPES,
 )
 from irlx.language.highlight import Kind
-from irlx.language.highlight.words import keyword_kinds, sign_kinds, terminals
+from irlx.language.highlight.words import keyword_kinds, sign_kinds
 from irlx.language.keywords import NAMES_TOO
+from irlx.language.terminals import terminals
 
 FILE = Path(__file__).resolve().with_name("irl.tmLanguage.json")
 SCOPES = {

@@ -5,10 +5,11 @@ from __future__ import annotations
 import hashlib
 import os
 import platform
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
-from importlib.metadata import version
+from importlib.metadata import distribution
 from math import inf
 from pathlib import Path
 from typing import IO
@@ -38,6 +39,7 @@ CellGiven = Cell | PathLike | None
 InputsGiven = InputFunction | Mapping[str, Sequence[tuple[float, float]]] | PathLike | None
 """A function of name and time (s), traces by name (times in s with the value from each on), or a CSV file."""
 
+_VERSION_LINE = re.compile(r"^Version: *(\S+)", re.MULTILINE)
 LEAST_TICK_MS = SHORTEST_TICK * 1e3
 LONGEST_TICK_MS = LONGEST_TICK * 1e3
 
@@ -197,8 +199,15 @@ def _untold(
 def software() -> tuple[str, ...]:
     """What the numbers of a stream depend on, with versions."""
     names = ("numpy", "scipy", "pin", "proxsuite")
-    found = [f"{name} {version(name)}" for name in names]
+    found = [f"{name} {_version(name)}" for name in names]
     return (f"python {platform.python_version()}", *found, f"machine {platform.machine()}")
+
+
+def _version(package: str) -> str:
+    """Version of an installed package, by the line that tells it: the rest is a long text to parse."""
+    installed = distribution(package)
+    found = _VERSION_LINE.search(installed.read_text("METADATA") or "")
+    return found[1] if found else installed.version
 
 
 def inputs_of(cell: Cell, given: InputsGiven) -> Inputs:

@@ -59,8 +59,8 @@ PathLike = str | os.PathLike[str]
 
 def verify(
     run_or_file: Run | PathLike,
-    program: PathLike | None = None,
-    cell: PathLike | None = None,
+    program: Program | PathLike | None = None,
+    cell: Cell | PathLike | None = None,
     max_steps: int | None = None,
 ) -> Report:
     """Check a run, or a stream file, independently of what made it.
@@ -68,12 +68,12 @@ def verify(
     The robot is that of `cell`; without one it is looked up: the cell of `program`, the cell file of the
     recorded name beside the stream or in the working folder, then the robot of the recorded name. With
     `program` the stream must come from that very text, and its blocks must be those that the text gives;
-    `max_steps` is for programs that were run with it.
+    `max_steps` is for programs that were run with it. Both may be given as they have been loaded.
     A damaged file fails the check 'file'. Raises StreamError where there is no file to
     read, CellError for a `cell` that cannot be used, ProgramError for a program that cannot.
     """
-    given_cell = None if cell is None else load_cell(Path(cell))
-    text = None if program is None else load(program, cell)
+    given_cell = cell if cell is None or isinstance(cell, Cell) else load_cell(Path(cell))
+    text = program if program is None or isinstance(program, Program) else load(program, cell)
     if isinstance(run_or_file, str | os.PathLike):
         scans: Scans = partial(scan_stream, run_or_file)
         name, beside, from_file = Path(run_or_file).name, Path(run_or_file).parent, True

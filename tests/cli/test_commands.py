@@ -12,6 +12,8 @@ import time
 import numpy as np
 import pytest
 
+from irlx.cli.main import build_parser
+from irlx.diagnostics.rendering import MACHINE_FORMATS
 from irlx.streams.formats import read_stream
 
 
@@ -142,7 +144,7 @@ try:
     code = main(sys.argv[1:])
 except SystemExit as stop:
     code = stop.code
-heavy = {"numpy", "scipy", "pinocchio", "proxsuite", "pydantic", "rich"} & set(sys.modules)
+heavy = {"numpy", "scipy", "pinocchio", "proxsuite", "pydantic", "rich", "lark"} & set(sys.modules)
 print(code, sorted(heavy), file=sys.stderr)
 """
 
@@ -156,6 +158,37 @@ def test_light_commands_load_nothing_numeric(folder, environment, arguments):
     )
     assert done.stderr == "0 []\n"
     assert done.stdout
+
+
+@pytest.mark.req("QA-11")
+@pytest.mark.parametrize("arguments", [["--help"], ["run", "--help"], ["--version"]])
+def test_a_help_loads_no_messages_either(environment, arguments):
+    """They and what they need took a third of the time."""
+    late = '{"dataclasses", "irlx.diagnostics", "json", "inspect",'
+    code = MODULES.replace('{"numpy",', late)
+    call = [sys.executable, "-c", code, *arguments]
+    done = subprocess.run(call, env=environment, capture_output=True, text=True, check=True, timeout=60)
+    assert done.stderr == "0 []\n"
+
+
+@pytest.mark.req("QA-11")
+@pytest.mark.parametrize("command", ["check", "fmt"])
+def test_a_command_loads_no_other_command(folder, environment, command):
+    code = MODULES.replace("heavy = {", "heavy = {'irlx.cli.run', 'irlx.cli.robots', 'irlx.cli.demo',")
+    call = [sys.executable, "-c", code, command, "p.irl"]
+    done = subprocess.run(
+        call, cwd=folder, env=environment, capture_output=True, text=True, check=True, timeout=60
+    )
+    assert done.stderr.splitlines()[-1] == "0 []"
+
+
+def test_check_offers_every_format():
+    (formats,) = (
+        action.choices
+        for action in build_parser("check").commands.choices["check"]._actions
+        if action.dest == "format"
+    )
+    assert list(formats) == ["text", *MACHINE_FORMATS]
 
 
 @pytest.mark.req("QA-11")

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from compiled_grammar import build_grammar
 from irlx.cli.main import main
 from irlx.conformance import find_cases, run_case, update_case
-from irlx.language.grammar import build_grammar
 from irlx.language.lexing import lex
 from irlx.language.parser import parse
 from irlx.language.source import decode_source

@@ -1,18 +1,24 @@
-"""The grammar: no conflicts, keywords, cache."""
+"""The grammar: no conflicts, keywords, tables; lexer and parser beside those of Lark, which are the truth."""
 
 import io
 import logging
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import lark
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
-from irlx.language import grammar
-from irlx.language.grammar_text import grammar_text
+from compiled_grammar import build_grammar, make_tables
+from irlx.language import lexing, tree
+from irlx.language.builder import TreeBuilder
+from irlx.language.grammar_text import grammar_file, grammar_text
 from irlx.language.keywords import NAMES_TOO, keyword_table
+from irlx.language.lexing import lex
+from irlx.language.parser import parse
+from irlx.language.source import source_text
 
 
 @pytest.mark.req("LANG-04")
@@ -23,7 +29,7 @@ def test_grammar_has_no_conflicts():
     lark.logger.addHandler(handler)
     lark.logger.setLevel(logging.DEBUG)
     try:
-        grammar.build_grammar(debug=True)
+        build_grammar(debug=True)
         lark.Lark('start: "a" start | "a" start "b" | "a"', parser="lalr", debug=True)
     finally:
         lark.logger.removeHandler(handler)
@@ -42,81 +48,93 @@ def test_keywords_come_from_the_declare_lines():
     assert {word.strip() for word in rule.removeprefix("name:").split("|")} - {"NAME"} == NAMES_TOO
 
 
-@pytest.fixture
-def fresh(monkeypatch):
-    grammar.load_grammar.cache_clear()
-    yield monkeypatch
-    grammar.load_grammar.cache_clear()
+def test_tables_are_up_to_date():
+    written = grammar_file("irl.tables.json").read_text(encoding="utf-8")
+    assert written == make_tables.tables(), "python grammar/make_tables.py"
 
 
-def _parses(loaded):
-    return loaded.parse("PROGRAM t; BEGIN ENDPROGRAM").name.name == "t"
+def programs():
+    """All programs of the repository, and texts with the mistakes that the lexer takes up."""
+    root = Path(__file__).parents[2]
+    for folder in ("programs", "tests/conformance"):
+        for path in sorted((root / folder).rglob("*.irl")):
+            yield source_text(path.name, path.read_text(encoding="utf-8", errors="replace"))
+    yield source_text("p", "x := a == b && 'open\ny := “a”; // c\n/* d */ § . .. .5 1..2 1.e { open")
 
 
-def test_cache_file_is_written_and_read(fresh, tmp_path):
-    fresh.setenv("XDG_CACHE_HOME", str(tmp_path))
-    assert _parses(grammar.load_grammar())
-    path = grammar.cache_file()
-    assert path is not None
-    assert path.is_file()
-    assert [p.name for p in path.parent.iterdir()] == [path.name]
-    fresh.setattr(grammar, "build_grammar", lambda: pytest.fail("compiled although cached"))
-    grammar.load_grammar.cache_clear()
-    assert _parses(grammar.load_grammar())
+@pytest.fixture(scope="module")
+def compiled():
+    return build_grammar()
 
 
-@pytest.mark.parametrize("damage", [b"", b"nonsense", b"\x80" * 5000])
-def test_damaged_cache_is_replaced(fresh, tmp_path, damage):
-    fresh.setenv("XDG_CACHE_HOME", str(tmp_path))
-    path = grammar.cache_file()
-    assert path is not None
-    path.parent.mkdir(parents=True)
-    path.write_bytes(damage)
-    assert _parses(grammar.load_grammar())
-    assert len(path.read_bytes()) > 10_000
+def parts(tokens):
+    """All that a token says."""
+    return [(one.type, str(one), one.start_pos, one.end_pos, one.line, one.column) for one in tokens]
 
 
-def test_cache_folder_that_cannot_be_made(fresh, tmp_path):
-    (tmp_path / "file").write_text("")
-    fresh.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
-    assert _parses(grammar.load_grammar())
+def all_tokens(text):
+    """Tokens of the lexer of irlx, with those that it takes out."""
+    lexer = lexing._Lexer(source_text("p", text))
+    lexer._taken_out = lexer.tokens.append
+    lexer.run(text)
+    return lexer.tokens
 
 
-@pytest.mark.req("LANG-76")
-@pytest.mark.skipif(not Path("/proc/self").is_dir(), reason="no folder that not even root can write to")
-def test_read_only_home(fresh):
-    fresh.delenv("XDG_CACHE_HOME", raising=False)
-    fresh.setenv("HOME", "/proc/self")
-    assert _parses(grammar.load_grammar())
+@pytest.mark.req("LANG-04")
+def test_programs_fall_into_the_tokens_that_lark_finds(compiled):
+    count = 0
+    for source in programs():
+        found = all_tokens(source.text)
+        count += len(found)
+        assert parts(found) == parts(compiled.lex(source.text))
+    assert count > 10_000
 
 
-@pytest.mark.parametrize("home", ["", None, "relative"])
-def test_no_home(fresh, home):
-    fresh.delenv("XDG_CACHE_HOME", raising=False)
-    fresh.delenv("USERPROFILE", raising=False)
-    if home is None:
-        fresh.delenv("HOME", raising=False)
-    else:
-        fresh.setenv("HOME", home)
-    assert grammar.cache_file() is None
+PIECES = st.sampled_from(
+    [
+        *"'\"{}()[]*/.,:;=<>&|!+-@ \n\t\u2028e5x§“”é",
+        "(*",
+        "*)",
+        "//",
+        "..",
+        "1.5e3",
+        "ENDIF",
+        "x1",
+        "0",
+        "\r\n",
+    ]
+)
 
 
-def test_cached_load_is_fast(fresh, tmp_path):
-    fresh.setenv("XDG_CACHE_HOME", str(tmp_path))
-    grammar.load_grammar()
-    times = []
-    for _ in range(5):
-        grammar.load_grammar.cache_clear()
-        start = time.perf_counter()
-        grammar.load_grammar()
-        times.append(time.perf_counter() - start)
-    # The aim is 30 ms; a busy machine may take longer.
-    assert min(times) < 0.1
+@settings(max_examples=200, deadline=None, suppress_health_check=list(HealthCheck))
+@given(st.lists(PIECES, max_size=25).map("".join))
+def test_any_text_falls_into_the_tokens_that_lark_finds(compiled, text):
+    assert parts(all_tokens(text)) == parts(compiled.lex(text))
+
+
+@pytest.mark.req("LANG-04")
+def test_trees_are_those_that_lark_builds():
+    """Lark's own parser with the same builder is the truth, places included."""
+    transforming = build_grammar(transformer=TreeBuilder())
+    count = 0
+    for source in programs():
+        lexed = lex(source)
+        parsed = parse(source)
+        if parsed.tree is None or not parsed.complete or parsed.findings:
+            continue
+        interactive = transforming.parse_interactive()
+        for token in lexed.tokens:
+            interactive.feed_token(token)
+        expected = interactive.feed_eof()
+        count += 1
+        assert list(map(repr, tree.walk(parsed.tree))) == list(map(repr, tree.walk(expected)))
+        assert [node.span for node in tree.walk(parsed.tree)] == [node.span for node in tree.walk(expected)]
+    assert count > 200
 
 
 @pytest.mark.req("LANG-76")
 def test_front_end_imports_no_numerics():
-    loaded = "[m for m in ('numpy', 'pinocchio', 'rich') if m in sys.modules]"
+    loaded = "[m for m in ('numpy', 'pinocchio', 'rich', 'lark') if m in sys.modules]"
     code = f"import irlx.language.analysis; print({loaded})"
     source = Path(__file__).parents[2] / "src"
     done = subprocess.run(

@@ -4,9 +4,9 @@ from dataclasses import fields
 
 import pytest
 
+from compiled_grammar import build_grammar
 from irlx.diagnostics import Span
 from irlx.language import tree as t
-from irlx.language.grammar import build_grammar
 
 AT = Span(0, 0)
 

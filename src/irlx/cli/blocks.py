@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from typing import Any
 
 from irlx.cli.execution import add_execution_options, standard_input
-from irlx.cli.output import encodable
 
 _EXAMPLE = "examples:\n  irlx blocks programs/koch/square.irl\n"
 
@@ -54,5 +52,9 @@ def command(options: argparse.Namespace) -> int:
 
 def _print_written(name: str | None, text: str) -> None:
     """A line for what the program writes, at the place where a run would write it."""
+    import json
+
+    from irlx.cli.output import encodable
+
     file = f"'{name}' " if name is not None else ""
     print(encodable(f"  WRITE {file}{json.dumps(text, ensure_ascii=False)}", sys.stdout))

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import argparse
 import sys
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from irlx.cli.execution import add_execution_options, add_plugin_option, import_plugins
-from irlx.diagnostics import Diagnostic
-from irlx.diagnostics.rendering import MACHINE_FORMATS
+
+if TYPE_CHECKING:
+    from irlx.diagnostics import Diagnostic
 
 _EXAMPLE = """\
 examples:
@@ -16,6 +17,7 @@ examples:
   irlx check programs/koch/line.irl --motion
   irlx check programs/koch/square.irl programs/koch/line.irl --format json
 """
+_FORMATS = ("text", "concise", "json", "sarif", "github")
 
 
 def add_parser(commands: Any) -> None:
@@ -36,7 +38,7 @@ def add_parser(commands: Any) -> None:
     add_plugin_option(parser)
     parser.add_argument(
         "--format",
-        choices=["text", *MACHINE_FORMATS],
+        choices=_FORMATS,
         default="text",
         help="how to print the findings (default: text, on stderr; the others go to stdout, alone)",
     )
@@ -74,6 +76,7 @@ def _print_text(checked: list[tuple[str, list[Diagnostic]]]) -> None:
 def _print_for_machines(found: list[Diagnostic], format: str) -> None:
     """What several programs share, a cell or a data list, is told once."""
     from irlx.cli.output import encodable
+    from irlx.diagnostics.rendering import MACHINE_FORMATS
 
     text = MACHINE_FORMATS[format](list(dict.fromkeys(found)))
     if text:

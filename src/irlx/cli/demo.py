@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import argparse
 import shlex
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
     from irlx.report.lines import Line
@@ -24,8 +23,7 @@ _LABELS = frozenset({"slowed", "clearance", "cyclic"})
 """Labels of the lines of the summary that a first look is about."""
 
 
-@dataclass(frozen=True)
-class _Files:
+class _Files(NamedTuple):
     """What a demo writes."""
 
     program: Path

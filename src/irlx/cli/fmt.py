@@ -8,8 +8,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from irlx.diagnostics import IrlxError
-
 _EXAMPLE = """\
 examples:
   irlx fmt programs/koch/square.irl
@@ -39,6 +37,7 @@ def add_parser(commands: Any) -> None:
 def command(options: argparse.Namespace) -> int:
     """Format each file; those with errors are left alone and reported. 1 where --check finds changes."""
     from irlx.cli.output import exit_code, print_diagnostics
+    from irlx.diagnostics import IrlxError
 
     worst = 0
     for name in options.programs:

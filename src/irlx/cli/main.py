@@ -10,44 +10,32 @@ import argparse
 import os
 import sys
 from collections.abc import Sequence
+from importlib import import_module
+from typing import TYPE_CHECKING
 
 from irlx._version import __version__
-from irlx.cli import (
-    blocks,
-    check,
-    completion,
-    conformance,
-    convert,
-    demo,
-    explain,
-    fmt,
-    new,
-    plot,
-    robots,
-    run,
-    verify,
-    view,
-)
-from irlx.cli.output import exit_code, print_diagnostics
 from irlx.cli.parser import CommandParser
-from irlx.diagnostics import IrlxError, report
+
+if TYPE_CHECKING:
+    from irlx.diagnostics import Diagnostic
 
 _COMMANDS = (
-    demo,
-    run,
-    check,
-    fmt,
-    blocks,
-    verify,
-    view,
-    plot,
-    convert,
-    robots,
-    new,
-    explain,
-    completion,
-    conformance,
+    "demo",
+    "run",
+    "check",
+    "fmt",
+    "blocks",
+    "verify",
+    "view",
+    "plot",
+    "convert",
+    "robots",
+    "new",
+    "explain",
+    "completion",
+    "conformance",
 )
+"""Modules of the commands, in the order of the help."""
 _EXAMPLE = """\
 examples:
   irlx demo
@@ -57,8 +45,8 @@ examples:
 """
 
 
-def build_parser() -> argparse.ArgumentParser:
-    """Parser of the whole command line."""
+def build_parser(only: str | None = None) -> argparse.ArgumentParser:
+    """Parser of the whole command line, or of one command, which takes less time to build."""
     parser = CommandParser(
         prog="irlx",
         description="Run robot programs in the irlx profile of IRL; joint streams come out, verified.",
@@ -68,8 +56,8 @@ def build_parser() -> argparse.ArgumentParser:
     parser.add_argument("-V", "--version", action="version", version=f"irlx {__version__}")
     parser.set_defaults(command=None)
     commands = parser.add_subparsers(title="commands", metavar="COMMAND")
-    for module in _COMMANDS:
-        module.add_parser(commands)
+    for name in _COMMANDS if only is None else (only,):
+        import_module(f"irlx.cli.{name}").add_parser(commands)
     parser.commands = commands
     return parser
 
@@ -79,7 +67,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     Raises SystemExit for --help and what argparse refuses.
     """
-    parser = build_parser()
+    first = next(iter(sys.argv[1:] if arguments is None else arguments), None)
+    parser = build_parser(first if first in _COMMANDS else None)
     try:
         options = parser.parse_args(arguments)
         if options.command is None:
@@ -88,9 +77,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         code = options.command(options)
         # Here and not at the end of the process: a reader that went away must be met inside this fence.
         sys.stdout.flush()
-    except IrlxError as error:
-        print_diagnostics(error.diagnostics)
-        return exit_code(error.diagnostics)
     except KeyboardInterrupt:
         return 130
     except BrokenPipeError:
@@ -98,13 +84,26 @@ def main(arguments: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     except Exception as error:
-        # The last fence: a fault of irlx itself must still be a message, not a traceback.
-        if os.environ.get("IRLX_DEBUG"):
-            raise
-        fault = report("IRL090", cause=f"{type(error).__name__}: {error}")
-        print_diagnostics((fault,))
-        return 2
+        return _told(error)
     return int(code)
+
+
+def _told(error: Exception) -> int:
+    """Print what went wrong; gives the exit code."""
+    # Imported here: what prints a help has no need of messages.
+    from irlx.cli.output import exit_code, print_diagnostics
+    from irlx.diagnostics import IrlxError, report
+
+    found: Sequence[Diagnostic] = ()
+    if isinstance(error, IrlxError):
+        found = error.diagnostics
+    elif os.environ.get("IRLX_DEBUG"):
+        raise error
+    else:
+        # The last fence: a fault of irlx itself must still be a message, not a traceback.
+        found = (report("IRL090", cause=f"{type(error).__name__}: {error}"),)
+    print_diagnostics(found)
+    return exit_code(found)
 
 
 def entry_point() -> None:

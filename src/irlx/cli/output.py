@@ -8,12 +8,10 @@ import sys
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, TextIO
 
-from irlx.diagnostics import Diagnostic
-from irlx.diagnostics.text import render_text
-
 if TYPE_CHECKING:
     from rich.text import Text
 
+    from irlx.diagnostics import Diagnostic
     from irlx.report.lines import Line
 
 _COLOURS = {"error": "\x1b[1;31m", "warning": "\x1b[1;33m", "info": "\x1b[1;36m"}
@@ -33,6 +31,8 @@ def coloured(stream: object) -> bool:
 
 def print_diagnostics(diagnostics: Iterable[Diagnostic]) -> None:
     """Print each diagnostic with its place and excerpt on stderr."""
+    from irlx.diagnostics.text import render_text
+
     render = _in_colours if coloured(sys.stderr) else render_text
     for diagnostic in diagnostics:
         print(encodable(render(diagnostic), sys.stderr), file=sys.stderr)
@@ -41,6 +41,7 @@ def print_diagnostics(diagnostics: Iterable[Diagnostic]) -> None:
 def _in_colours(diagnostic: Diagnostic) -> str:
     """Text of a diagnostic for a terminal: its code and the mark below the excerpt stand out."""
     from irlx.cli.painting import painted_line
+    from irlx.diagnostics.text import render_text
 
     colour = _COLOURS[diagnostic.severity.value]
     words = f"{diagnostic.severity.value} {diagnostic.code}"

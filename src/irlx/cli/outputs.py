@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from pathlib import Path
 
 __all__ = ["output_paths", "page_path", "written"]
@@ -70,6 +69,8 @@ def _check_page(path: Path) -> None:
     try:
         check_writable(path)
     except StreamError as error:
+        from dataclasses import replace
+
         helps = "name another file with --html"
         raise StreamError([replace(found, help=helps) for found in error.diagnostics]) from error
 

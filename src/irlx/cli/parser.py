@@ -6,10 +6,10 @@ import argparse
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from irlx.diagnostics import IrlxError, report
-from irlx.diagnostics.diagnostic import near_matches
+if TYPE_CHECKING:
+    from irlx.diagnostics import IrlxError
 
 __all__ = ["CommandParser"]
 
@@ -45,7 +45,7 @@ class CommandParser(argparse.ArgumentParser):
                 return
             if not argument.startswith("-"):
                 self._look_at_options(given[:place])
-                raise IrlxError(report("IRL016", name=argument, near=_meant(argument, list(known))))
+                raise _unknown_command(argument, list(known))
         self._look_at_options(given)
 
     def _look_at_options(self, given: Sequence[str]) -> None:
@@ -61,12 +61,24 @@ class CommandParser(argparse.ArgumentParser):
         return [name for name in self._option_string_actions if name.startswith("--")]
 
     def _unknown(self, option: str) -> IrlxError:
+        from irlx.diagnostics import IrlxError, report
+        from irlx.diagnostics.diagnostic import near_matches
+
         near = near_matches(option, self._long()) if option.startswith("--") else ""
         return IrlxError(report("IRL017", command=self.prog, option=option, near=near))
+
+
+def _unknown_command(word: str, commands: list[str]) -> IrlxError:
+    # Imported here, as above: only a slip needs messages, and they take as long to load as all the rest.
+    from irlx.diagnostics import IrlxError, report
+
+    return IrlxError(report("IRL016", name=word, near=_meant(word, commands)))
 
 
 def _meant(word: str, commands: list[str]) -> str:
     """Clause with what may be meant by a word that is no command."""
     if Path(word).suffix.lower() == ".irl":
         return f"; did you mean 'irlx run {word}'?"
+    from irlx.diagnostics.diagnostic import near_matches
+
     return near_matches(word, commands)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 
 from irlx.cli.execution import import_plugins, standard_input
@@ -19,6 +18,8 @@ _OF_ITS_OWN = {"output": "-o", "tick": "--tick", "max_slow": "--max-slow", "max_
 
 def reproduced(options: argparse.Namespace) -> int:
     """Print what came of it; 1 where the stream is another one."""
+    import json
+
     from irlx.cli.output import encodable, print_diagnostics
     from irlx.diagnostics import IrlxError, report
     from irlx.reproduction import reproduce

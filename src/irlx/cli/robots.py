@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
-from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from math import degrees, isinf
 from typing import TYPE_CHECKING, Any
 
@@ -48,6 +45,8 @@ def add_parser(commands: Any) -> None:
 
 def command(options: argparse.Namespace) -> int:
     """Print what was asked for on stdout; of a check 1 where no cell could use the URDF."""
+    import json
+
     if options.check is not None:
         if options.name is not None:
             options.refuse("give a NAME or --check, not both")
@@ -113,6 +112,8 @@ def _aligned(rows: Iterable[Sequence[str]]) -> list[str]:
 
 def _show(options: argparse.Namespace) -> int:
     """Joints of one robot, with units of cells: deg | mm."""
+    import json
+
     found = _found(options.name, options.tip)
     robot, joints = found.robot, [_joint(found, index) for index in range(len(found.robot.axes))]
     if options.json:
@@ -137,6 +138,8 @@ def _show(options: argparse.Namespace) -> int:
 
 def _found(name: str, tip: str | None) -> BareRobot:
     """The robot. Raises CellError, of a name that is none in words for a command: there is no cell file."""
+    from dataclasses import replace
+
     from irlx.cell.bare_robot import bare_robot
     from irlx.cell.errors import CellError
 
@@ -181,6 +184,8 @@ def _finite(value: Any) -> Any:
 
 
 def _check(options: argparse.Namespace) -> int:
+    import json
+
     from irlx.cell.robot_check.check import check_robot
     from irlx.diagnostics.plain import plain_diagnostic
 
@@ -194,6 +199,8 @@ def _check(options: argparse.Namespace) -> int:
 
 def _print_findings(found: Sequence[Diagnostic], file: str) -> None:
     """Findings on stderr, those of one code beyond the first few as a number; a line on stdout."""
+    from collections import Counter
+
     from irlx.cli.output import print_diagnostics
     from irlx.diagnostics import Severity
 

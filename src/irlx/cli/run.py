@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import argparse
-import json
 import os
 import sys
 from collections.abc import Iterable
-from dataclasses import replace
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, cast
 
@@ -163,6 +161,9 @@ def _pages(page: Path | None) -> list[Path]:
 
 def _prepared(options: argparse.Namespace, text: ProgramText) -> tuple[Job, list[Path], Path | None]:
     """Job, streams and page to write; what is wrong with them goes to stdout as well where JSON is wanted."""
+    import json
+    from dataclasses import replace
+
     from irlx.diagnostics import IrlxError
     from irlx.program import load
 
@@ -220,6 +221,8 @@ def _why(error: Diagnostic, run: Outcome) -> str:
 
 def _tell_partial(run: Outcome, outputs: list[Path], why: str, options: argparse.Namespace) -> None:
     """Say how far it came and where that is: the asked names only ever hold complete streams."""
+    import json
+
     from irlx.cli.output import encodable, print_lines
     from irlx.report.terminal import stop_line
 
@@ -284,8 +287,8 @@ def _verified(path: Path, job: Job) -> Report:
     from irlx.verification import verify
 
     # What is replayed may be gone as a text.
-    program = job.program.path if isinstance(job.program, Program) else None
-    return verify(path, program, job.cell.file, job.max_steps)
+    program = job.program if isinstance(job.program, Program) else None
+    return verify(path, program, job.cell, job.max_steps)
 
 
 def _print_summary(
@@ -295,6 +298,8 @@ def _print_summary(
     broken: list[Diagnostic],
     options: argparse.Namespace,
 ) -> None:
+    import json
+
     from irlx.cli.output import print_lines
     from irlx.report.lines import Line
     from irlx.report.terminal import failed_lines, file_lines, summary_lines

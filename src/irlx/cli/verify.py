@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from typing import Any
 
@@ -35,6 +34,8 @@ def add_parser(commands: Any) -> None:
 
 def command(options: argparse.Namespace) -> int:
     """Print the table of checks on stdout; 1 where one fails."""
+    import json
+
     from irlx.cli.output import encodable, print_lines
     from irlx.report.lines import Line, Tone
     from irlx.verification import verify

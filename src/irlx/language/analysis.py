@@ -152,15 +152,21 @@ def _joint_names(root: _Root, joints: tuple[str, ...] | CellJoints) -> tuple[str
 
 
 def _static_findings(root: tree.Node, source: SourceText) -> list[Diagnostic]:
-    findings = []
+    findings: list[Diagnostic] = []
     for node in tree.walk(root):
-        if isinstance(node, tree.Move):
-            findings += check_move(node, source)
-        elif isinstance(node, tree.FreezeStart):
-            findings += check_freeze(node, source)
-        elif isinstance(node, tree.CriterionStart | tree.WithCriterion):
-            findings += check_criterion(node, source)
+        check = _STATIC_CHECKS.get(type(node))
+        if check is not None:
+            findings += check(node, source)
     return findings
+
+
+_STATIC_CHECKS: Mapping[type, Callable[..., list[Diagnostic]]] = {
+    tree.Move: check_move,
+    tree.FreezeStart: check_freeze,
+    tree.CriterionStart: check_criterion,
+    tree.WithCriterion: check_criterion,
+}
+"""What looks at nodes of a kind alone."""
 
 
 def _imported(

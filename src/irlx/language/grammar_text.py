@@ -5,16 +5,21 @@ from __future__ import annotations
 from functools import lru_cache
 from pathlib import Path
 
-__all__ = ["grammar_text"]
+__all__ = ["grammar_file", "grammar_text"]
 
 _PACKAGE = Path(__file__).resolve().parent.parent
 
 
-@lru_cache(maxsize=1)
-def grammar_text() -> str:
-    """Text of ``irl.lark``; FileNotFoundError names both places when the installation is damaged."""
-    places = (_PACKAGE / "grammar" / "irl.lark", _PACKAGE.parent.parent / "grammar" / "irl.lark")
+def grammar_file(name: str) -> Path:
+    """Path of a file of the grammar; FileNotFoundError names both places when the installation is damaged."""
+    places = (_PACKAGE / "grammar" / name, _PACKAGE.parent.parent / "grammar" / name)
     for place in places:
         if place.is_file():
-            return place.read_text(encoding="utf-8")
-    raise FileNotFoundError("no irl.lark at " + " or at ".join(str(place) for place in places))
+            return place
+    raise FileNotFoundError(f"no {name} at " + " or at ".join(str(place) for place in places))
+
+
+@lru_cache(maxsize=1)
+def grammar_text() -> str:
+    """Text of ``irl.lark``."""
+    return grammar_file("irl.lark").read_text(encoding="utf-8")

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
+from functools import lru_cache
 from math import isinf
 from typing import Any
 
-from lark import Token
-
 from irlx.diagnostics import Diagnostic, Place, SourceText, Span, report
 from irlx.language.comments import opens_another, repaired
-from irlx.language.grammar import load_grammar
+from irlx.language.keywords import keyword_table
+from irlx.language.terminals import terminals
+from irlx.language.token import Token
 
 __all__ = ["Lexed", "is_open_string", "lex", "token_span"]
 
@@ -24,6 +26,8 @@ _SIGNS = {
     "||": ("OR", "OR"),
 }
 _LITERALS = frozenset({"STRING", "INT", "REAL"})
+_SIGN = "SIGN"
+_LAST = frozenset({"WRONG_CHARACTER"})
 _TAKEN_OUT = frozenset({"COMMENT", "WRONG_CHARACTER", "FOREIGN_COMMENT", "FOREIGN_SIGN", "FOREIGN_QUOTES"})
 
 
@@ -44,7 +48,7 @@ class Lexed:
 
 def token_span(token: Token) -> Span:
     """Span of a token."""
-    return Span(token.start_pos or 0, token.end_pos or 0)
+    return Span(token.start_pos, token.end_pos)
 
 
 def is_open_string(token: Token) -> bool:
@@ -74,6 +78,33 @@ def lex(source: SourceText, *, trust_comments: bool = True) -> Lexed:
     )
 
 
+class _Kinds(dict[str, str]):
+    """Terminal of each word that a text has, by how it is spelt there."""
+
+    def __missing__(self, word: str) -> str:
+        kind = self[str(word)] = keyword_table().get(word.casefold(), "NAME")
+        return kind
+
+
+@lru_cache(maxsize=1)
+def _sign_kinds() -> dict[str, str]:
+    return {one.pattern: one.name for one in terminals() if one.is_sign}
+
+
+@lru_cache(maxsize=1)
+def _master() -> re.Pattern[str]:
+    """Pattern of space and the lexeme behind it, in a group with the name of its terminal, or the end.
+
+    Most lexemes are words, and nothing else begins with a letter: they are tried first. Signs share a group.
+    """
+    signs = [re.escape(one.pattern) for one in terminals() if one.is_sign]
+    groups = [(one.name, one.pattern) for one in terminals() if not one.is_sign]
+    groups.sort(key=lambda group: (group[0] != "NAME", group[0] in _LAST))
+    before_last = len(groups) - len(_LAST)
+    groups.insert(before_last, (_SIGN, "|".join(signs)))
+    return re.compile(rf"\s*(?:{'|'.join(f'(?P<{name}>{pattern})' for name, pattern in groups)}|\Z)")
+
+
 class _Lexer:
     def __init__(self, source: SourceText) -> None:
         self._source = source
@@ -85,15 +116,38 @@ class _Lexer:
         self.doubtful = False
 
     def run(self, text: str) -> None:
-        take = self.tokens.append
-        for token in load_grammar().lex(text):
-            kind = token.type
-            if kind in _TAKEN_OUT:
-                self._taken_out(token)
-                continue
-            take(token)
-            if kind in _LITERALS:
-                self._literal(token)
+        take, signs, kinds = self.tokens.append, _sign_kinds(), _Kinds()
+        new = str.__new__
+        line, line_start, last = 1, 0, 0
+        for match in _master().finditer(text):
+            group = match.lastgroup
+            if group is None:
+                break
+            # Named groups end last, so that the last one is the whole lexeme.
+            start, end = match.span(group)
+            lines = text.count("\n", last, start)
+            if lines:
+                line += lines
+                line_start = text.rfind("\n", last, start) + 1
+            last = start
+            token = new(Token, match[group])
+            token.start_pos = start
+            token.end_pos = end
+            token.line = line
+            token.column = start - line_start + 1
+            if group == "NAME":
+                token.type = kinds[token]
+                take(token)
+            elif group == _SIGN:
+                token.type = signs[token]
+                take(token)
+            else:
+                token.type = group
+                if group in _TAKEN_OUT:
+                    self._taken_out(token)
+                else:
+                    take(token)
+                    self._literal(token)
 
     def add(self, code: str, span: Span, **data: Any) -> None:
         self.findings.append(report(code, Place.in_text(self._source, span), **data))
@@ -123,7 +177,7 @@ class _Lexer:
             # Several in a row are one mistake.
             if token.start_pos != self._wrong_until:
                 self._wrong_character(token)
-            self._wrong_until = token.end_pos or 0
+            self._wrong_until = token.end_pos
 
     def _wrong_character(self, token: Token) -> None:
         number = f"U+{ord(token[0]):04X}"

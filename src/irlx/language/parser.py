@@ -5,13 +5,11 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from lark import Token
-
 from irlx.diagnostics import Diagnostic, SourceText, Span
 from irlx.language.builtins import MOVE_PARAMETERS
 from irlx.language.lexing import Lexed, lex
 from irlx.language.parsing.blocks import BRANCH_WORDS, CLOSERS, PART_WORDS
-from irlx.language.parsing.driver import MAX_ERRORS, Driver, ParseStopped
+from irlx.language.parsing.driver import MAX_ERRORS, TRACKED, Driver, ParseStopped
 from irlx.language.parsing.indentation import Hints, read_indentation
 from irlx.language.parsing.machine import END
 from irlx.language.parsing.missing_ends import follow_hints
@@ -19,6 +17,7 @@ from irlx.language.parsing.misspelling import misspelt_alone
 from irlx.language.parsing.nesting import too_deep
 from irlx.language.parsing.recovery import close_all, missing_semicolon, recover
 from irlx.language.parsing.repairs import ends_with_comma, is_decimal_comma
+from irlx.language.token import Token
 from irlx.language.tree import DataList, Module, Program
 
 __all__ = ["Parse", "parse"]
@@ -151,6 +150,7 @@ def _without_consequences(lexed: Lexed, driver: Driver) -> list[Diagnostic]:
 
 def _run(driver: Driver, hints: Hints) -> None:
     machine, tokens, guided = driver.machine, driver.tokens, bool(hints)
+    feed, shifted = machine.feed, driver.shifted
     while True:
         if guided and follow_hints(driver, hints):
             continue
@@ -162,10 +162,11 @@ def _run(driver: Driver, hints: Hints) -> None:
         # and what has been reduced cannot be continued.
         if kind in _REDUCING and not machine.accepts(kind):
             recover(driver)
-        elif machine.feed(token):
+        elif feed(token):
             if kind == END:
                 return
-            driver.shifted(token)
+            if driver.at_boundary or kind in TRACKED:
+                shifted(token)
             driver.index += 1
         else:
             recover(driver)

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, assume, given, settings
 from hypothesis import strategies as st
 
+from compiled_grammar import build_grammar
 from irlx.language import tree
 from irlx.language.analysis import analyse
 from irlx.language.builtins import (
@@ -17,7 +18,6 @@ from irlx.language.builtins import (
     TYPES,
     is_port_name,
 )
-from irlx.language.grammar import load_grammar
 from irlx.language.highlight import Kind, pieces
 from irlx.language.highlight.words import keyword_kinds, sign_kinds
 from irlx.language.keywords import NAMES_TOO, keyword_table
@@ -129,10 +129,11 @@ def test_every_form_of_the_grammar_is_coloured_as_it_is_read(text):
 
 def test_texts_with_mistakes_fall_apart_where_the_lexer_says(sources):
     texts = [*sources.values(), "x := a == b && 'open\ny := “a”; // c\n/* d */ § { open", "(* { *) } 'a'"]
+    grammar = build_grammar()
     for text in texts:
         normal = source_text("t.irl", text).text
         assert "".join(piece.text for piece in pieces(normal)) == normal
-        whole = [token for token in load_grammar().lex(normal) if token.type != "COMMENT"]
+        whole = [token for token in grammar.lex(normal) if token.type != "COMMENT"]
         assert list(spans(normal)) == [(token.start_pos, token.end_pos) for token in whole]
 
 
@@ -244,7 +245,7 @@ def test_every_keyword_has_a_kind_and_every_sign():
     assert set(keyword_kinds()) == set(keyword_table().values())
     assert set(keyword_kinds().values()) == KEYWORDS
     signs = {
-        one.pattern.value for one in load_grammar().terminals if type(one.pattern).__name__ == "PatternStr"
+        one.pattern.value for one in build_grammar().terminals if type(one.pattern).__name__ == "PatternStr"
     }
     assert set(sign_kinds()) == signs
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Any, TypeAlias
 
-from lark import Token
-
 from irlx.diagnostics.place import Span
+from irlx.language.token import Token
 from irlx.language.tree import Node
 
 Children: TypeAlias = list[Any]
@@ -15,8 +14,8 @@ Children: TypeAlias = list[Any]
 def span_of(children: Children) -> Span:
     """Span from the first child to the last; both have to be tokens or nodes."""
     first, last = children[0], children[-1]
-    start: Any = first.start_pos if isinstance(first, Token) else first.span.start
-    end: Any = last.end_pos if isinstance(last, Token) else last.span.end
+    start: Any = first.start_pos if type(first) is Token else first.span.start
+    end: Any = last.end_pos if type(last) is Token else last.span.end
     return Span(start, end)
 
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from lark import Token
-
 from irlx.diagnostics.place import Span
 from irlx.language import tree
 from irlx.language.builder.children import Children, nodes_of, span_of, word_of
+from irlx.language.token import Token
 
 # Longer whole numbers are out of range whatever their value, and Python refuses to convert very long ones.
 _LONGEST_INT = 30
@@ -19,7 +18,7 @@ class ExpressionBuilder:
         """Reduce NAME."""
         token: Token = children[0]
         text = str(token)
-        return tree.Name(Span(token.start_pos or 0, token.end_pos or 0), text, text.casefold())
+        return tree.Name(Span(token.start_pos, token.end_pos), text, text.casefold())
 
     def names(self, children: Children) -> tuple[tree.Name, ...]:
         """Reduce a list of names."""

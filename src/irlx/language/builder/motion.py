@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-from lark import Token
-
 from irlx.language import tree
 from irlx.language.builder.children import Children, nodes_of, span_of
+from irlx.language.token import Token
 
 _CLAUSES = (tree.WithLimit, tree.WithReconfiguration, tree.WithCriterion, tree.WithTolerance)
 _LIMIT_KINDS: dict[str, tree.LimitKind] = {

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import Literal
 
-from lark import Token
-
 from irlx.language import tree
 from irlx.language.builder.children import Children, nodes_of, span_of
+from irlx.language.token import Token
 
 
 def _words(children: Children) -> list[str]:

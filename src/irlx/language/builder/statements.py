@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from lark import Token
-
 from irlx.language import tree
 from irlx.language.builder.children import Children, nodes_of, span_of
+from irlx.language.token import Token
 
 
 def _expressions_and_block(children: Children) -> tuple[list[tree.Expression], tuple[tree.Statement, ...]]:

@@ -142,7 +142,7 @@ def _gap(
 def _behind_semicolon(lexed: Lexed, offset: int) -> int:
     """Offset behind the first ``;`` from an offset on, which has none only where a declaration lacks it."""
     for token in lexed.tokens:
-        if token.type == "SEMICOLON" and (token.start_pos or 0) >= offset:
+        if token.type == "SEMICOLON" and token.start_pos >= offset:
             return token.end_pos or offset
     return offset
 

@@ -6,11 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
-from lark import Token
-
 from irlx.diagnostics import SourceText, Span
 from irlx.language.format.document import Doc, Remark
 from irlx.language.parsing.blocks import BOUNDARIES
+from irlx.language.token import Token
 
 __all__ = ["Tokens", "UnexpectedToken"]
 
@@ -53,7 +52,7 @@ class Tokens:
     @property
     def start(self) -> int:
         """Offset of the next token."""
-        return self._next.start_pos or 0
+        return self._next.start_pos
 
     @property
     def _next(self) -> Token:
@@ -130,7 +129,7 @@ def _gaps(text: str, tokens: Sequence[Token], comments: Sequence[Span]) -> list[
     index = end = 0
     previous = ""
     for token in (*tokens, _END):
-        start = len(text) if token is _END else token.start_pos or 0
+        start = len(text) if token is _END else token.start_pos
         inside = []
         while index < len(comments) and comments[index].start < start:
             inside.append(comments[index])
@@ -139,7 +138,7 @@ def _gaps(text: str, tokens: Sequence[Token], comments: Sequence[Span]) -> list[
             gaps.append(_gap(text, Span(end, start), inside, previous, token is _END))
         else:
             gaps.append(_Gap(last=text.count("\n", end, start)))
-        end, previous = token.end_pos or 0, token.type
+        end, previous = token.end_pos, token.type
     return gaps
 
 

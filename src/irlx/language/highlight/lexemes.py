@@ -12,8 +12,8 @@ from functools import lru_cache
 from typing import NamedTuple
 from unicodedata import normalize
 
-from irlx.language.highlight.words import terminals
 from irlx.language.keywords import keyword_table
+from irlx.language.terminals import terminals
 
 __all__ = ["SPACE", "Lexeme", "lexemes"]
 

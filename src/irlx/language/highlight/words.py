@@ -1,4 +1,4 @@
-"""Kinds of keywords and signs, and the patterns of all lexemes: read from the grammar, like the keywords."""
+"""Kinds of keywords and signs, read from the grammar, like the keywords."""
 
 from __future__ import annotations
 
@@ -6,16 +6,15 @@ import re
 from collections.abc import Mapping
 from functools import lru_cache
 from types import MappingProxyType
-from typing import NamedTuple
 
 from irlx.language.grammar_text import grammar_text
 from irlx.language.highlight.kind import Kind
 from irlx.language.keywords import keyword_table
+from irlx.language.terminals import terminals
 
-__all__ = ["Terminal", "keyword_kinds", "sign_kinds", "terminals"]
+__all__ = ["keyword_kinds", "sign_kinds"]
 
 _SECTION = re.compile(r"^// ---- (.*)$", re.MULTILINE)
-_TERMINAL = re.compile(r'^([A-Z_]+)(?:\.(-?\d+))?: (?:/(.+)/|"(.+)")$', re.MULTILINE)
 _OPERATION = re.compile(r"^.*-> (?:binary|unary)$", re.MULTILINE)
 _LITERAL = re.compile(r"^bool_literal: (.*)$", re.MULTILINE)
 _SECTIONS = (
@@ -25,23 +24,6 @@ _SECTIONS = (
     ("motion", Kind.MOTION),
 )
 """Beginnings of the grammar's headings; of a word that several sections use the first one here counts."""
-
-
-class Terminal(NamedTuple):
-    """One terminal of the grammar: its name, its pattern, and whether that is a sign, not an expression."""
-
-    name: str
-    pattern: str
-    is_sign: bool
-
-
-@lru_cache(maxsize=1)
-def terminals() -> tuple[Terminal, ...]:
-    """All terminals but keywords, those that are tried earlier first: by priority, then longer signs."""
-    found = []
-    for name, priority, pattern, sign in _TERMINAL.findall(grammar_text()):
-        found.append((-int(priority or 0), -len(sign), Terminal(name, pattern or sign, bool(sign))))
-    return tuple(terminal for _, _, terminal in sorted(found, key=lambda each: each[:2]))
 
 
 @lru_cache(maxsize=1)

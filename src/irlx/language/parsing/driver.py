@@ -6,22 +6,22 @@ from collections.abc import Sequence
 from functools import cached_property
 from typing import Any
 
-from lark import Token
-
 from irlx.diagnostics import Diagnostic, Place, Related, SourceText, Span, report
 from irlx.language.lexing import token_span
 from irlx.language.parsing.blocks import BOUNDARIES, CLOSERS
 from irlx.language.parsing.machine import END, Machine, Snapshot
+from irlx.language.token import Token
 
-__all__ = ["Driver", "ParseStopped"]
+__all__ = ["TRACKED", "Driver", "ParseStopped"]
 
 MAX_ERRORS = 20
 MAX_BLOCKS = 64
 MAX_PARENS = 100
 
 _CLOSING = frozenset(CLOSERS.values())
-_TRACKED = BOUNDARIES | _CLOSING | CLOSERS.keys()
-_TRACKED |= {"COLON", "LEFT_PAREN", "LEFT_BRACKET", "RIGHT_PAREN", "RIGHT_BRACKET"}
+TRACKED = BOUNDARIES | _CLOSING | CLOSERS.keys()
+TRACKED |= {"COLON", "LEFT_PAREN", "LEFT_BRACKET", "RIGHT_PAREN", "RIGHT_BRACKET"}
+"""Kinds of tokens that change what the driver knows; others do so only where a statement begins."""
 
 
 class ParseStopped(Exception):
@@ -68,7 +68,7 @@ class Driver:
     @property
     def previous_end(self) -> int:
         """Offset where the token before ends."""
-        return (self.previous.end_pos or 0) if self.previous is not None else 0
+        return self.previous.end_pos if self.previous is not None else 0
 
     @property
     def on_new_line(self) -> bool:
@@ -103,8 +103,7 @@ class Driver:
     def replace(self, kind: str) -> None:
         """Put a keyword in place of the next token."""
         old = self.token
-        position = {"start_pos": old.start_pos, "end_pos": old.end_pos, "line": old.line}
-        self.tokens[self.index] = Token(kind, str(old), column=old.column, **position)
+        self.tokens[self.index] = Token(kind, old, old.start_pos, old.end_pos, old.line, old.column)
 
     def shifted(self, token: Token) -> None:
         """Keep track of a token that the machine has taken."""
@@ -115,7 +114,7 @@ class Driver:
             # As a name, DATALIST begins a statement like any other name.
             self.head = "NAME" if token.type == "DATALIST" and not self._opens_list(token) else token.type
             self.at_boundary = False
-        if token.type in _TRACKED:
+        if token.type in TRACKED:
             self._track(token)
 
     def _track(self, token: Token) -> None:

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from lark import Token
-
 from irlx.language.parsing.blocks import BOUNDARIES, BRANCH_WORDS, CLOSERS, PART_WORDS, STATEMENT_WORDS
 from irlx.language.parsing.machine import END
+from irlx.language.token import Token
 
 __all__ = ["Hints", "read_indentation"]
 

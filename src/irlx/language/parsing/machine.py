@@ -1,71 +1,22 @@
-"""The LALR machine: Lark's tables, driven token by token so that recovery can step in anywhere."""
+"""The LALR machine: tables of the grammar, driven token by token so that recovery can step in anywhere."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, TypeAlias
+from typing import Any
 
-from lark import Token
-from lark.parsers.lalr_analysis import Shift
-
-from irlx.language.grammar import load_grammar
+from irlx.language.parsing.tables import Tables, read_tables
+from irlx.language.token import Token
 
 __all__ = ["END", "Machine", "Snapshot"]
 
 END = "$END"
 
-_Reduction: TypeAlias = tuple[Callable[[list[Any]], Any] | None, int, str]
-_Row: TypeAlias = dict[str, int | _Reduction]
-
-
-class _Rows(dict[int, _Row]):
-    """Rows by state, made when they are first asked for."""
-
-    def __init__(self, make: Callable[[int], _Row]) -> None:
-        super().__init__()
-        self._make = make
-
-    def __missing__(self, state: int) -> _Row:
-        row = self[state] = self._make(state)
-        return row
-
-
-class _Tables:
-    """Lark's tables in the form the machine reads fastest; a state is converted on first use.
-
-    A reduction without a callback leaves the value as it is: the unit rules of expressions.
-    """
-
-    def __init__(self) -> None:
-        state = load_grammar().parse_interactive().parser_state
-        self._conf = state.parse_conf
-        self.start: int = self._conf.start_state
-        self.end: int = self._conf.end_state
-        self.rows = _Rows(self._row)
-        self.chains: dict[tuple[int, int, str], int] = {}
-
-    def _row(self, state: int) -> _Row:
-        """Actions of a state by terminal, and its successors by rule."""
-        actions = self._conf.states[state]
-        return {
-            symbol: argument if action is Shift else self._reduction(argument)
-            for symbol, (action, argument) in actions.items()
-        }
-
-    def _reduction(self, rule: Any) -> _Reduction:
-        size = len(rule.expansion)
-        name = rule.origin.name
-        unchanged = size == 1 and rule.options.expand1 and not rule.alias
-        if unchanged and not rule.expansion[0].name.startswith("_"):
-            return None, size, name
-        return self._conf.callbacks[rule], size, name
-
 
 @lru_cache(maxsize=1)
-def _tables() -> _Tables:
-    return _Tables()
+def _tables() -> Tables:
+    return read_tables()
 
 
 @dataclass(frozen=True)

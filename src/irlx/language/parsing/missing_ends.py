@@ -27,7 +27,7 @@ _BRANCH_OF = {"ELSE": "IF", "ELSIF": "IF", "WHEN": "CASE", "DEFAULT": "CASE"}
 
 def follow_hints(driver: Driver, hints: Hints) -> bool:
     """Do before the next token what the indentation asks for; True where the parse has moved on."""
-    offset = driver.token.start_pos or 0
+    offset = driver.token.start_pos
     for opener in hints.missing.get(offset, ()):
         if not driver.blocks or driver.blocks[-1].start_pos != opener.start_pos:
             break
@@ -159,7 +159,7 @@ def _report_extra_end(driver: Driver) -> None:
 
 def _report_missing_end(driver: Driver) -> None:
     opener = driver.blocks[-1]
-    line, _ = driver.source.line_and_column(opener.start_pos or 0)
+    line, _ = driver.source.line_and_column(opener.start_pos)
     related = Related(f"the {opener.type} that it has to close", driver.place(token_span(opener)))
     where = token_span(driver.token)
     if driver.token.type == END:

@@ -5,14 +5,13 @@ from __future__ import annotations
 from difflib import get_close_matches
 from functools import lru_cache
 
-from lark import Token
-
 from irlx.language.builtins import PROCEDURES, TYPES
 from irlx.language.keywords import keyword_table
 from irlx.language.lexing import token_span
 from irlx.language.parsing.blocks import CLOSERS
 from irlx.language.parsing.driver import Driver
 from irlx.language.parsing.machine import END
+from irlx.language.token import Token
 
 __all__ = ["end_of_something", "misspelt_alone", "misspelt_here", "misspelt_start"]
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from lark import Token
-
 from irlx.diagnostics import Span
 from irlx.language.keywords import NAMES_TOO
 from irlx.language.lexing import token_span
@@ -11,6 +9,7 @@ from irlx.language.parsing.blocks import STATEMENT_WORDS
 from irlx.language.parsing.driver import Driver
 from irlx.language.parsing.machine import END
 from irlx.language.parsing.wording import construct, expected_words, found_words, sign_or_word
+from irlx.language.token import Token
 
 __all__ = [
     "comma_for_semicolon",
@@ -174,8 +173,7 @@ def ends_with_comma(driver: Driver) -> bool:
 
 def _as_semicolon(driver: Driver, comma: Token) -> bool:
     driver.report("IRL122", token_span(comma), construct=construct(driver.statement_tokens))
-    position = {"start_pos": comma.start_pos, "end_pos": comma.end_pos, "line": comma.line}
-    driver.take(Token("SEMICOLON", ";", **position))
+    driver.take(Token("SEMICOLON", ";", comma.start_pos, comma.end_pos, comma.line))
     driver.index += 1
     return True
 

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence, Set
 
-from lark import Token
-
 from irlx.language.keywords import NAMES_TOO
 from irlx.language.parsing.machine import END
+from irlx.language.token import Token
 
 __all__ = ["construct", "expected_words", "found_words", "sign_or_word"]
 

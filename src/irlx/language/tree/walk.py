@@ -7,14 +7,23 @@ from dataclasses import fields
 from functools import cache
 from typing import Any
 
-from irlx.language.tree.nodes import Name, Node
+from irlx.language.tree.nodes import Node
 
 __all__ = ["walk"]
 
 
+_PLAIN = frozenset({"bool", "float", "int", "str"})
+"""Types, as the annotations spell them, of fields without nodes."""
+
+
 @cache
 def _child_fields(kind: Any) -> tuple[str, ...]:
-    return tuple(field.name for field in fields(kind) if field.name not in ("span", "key", "op", "kind"))
+    """Fields of a kind of nodes that may hold nodes, the last one first."""
+    return tuple(
+        field.name
+        for field in reversed(fields(kind))
+        if field.name not in ("span", "key", "op", "kind") and field.type not in _PLAIN
+    )
 
 
 def walk(*roots: Node) -> Iterator[Node]:
@@ -26,12 +35,10 @@ def walk(*roots: Node) -> Iterator[Node]:
     while stack:
         node = stack.pop()
         yield node
-        if isinstance(node, Name):
-            continue
         kind: Any = type(node)
-        for name in reversed(_child_fields(kind)):
+        for name in _child_fields(kind):
             child = getattr(node, name)
-            if isinstance(child, Node):
-                stack.append(child)
-            elif isinstance(child, tuple):
+            if isinstance(child, tuple):
                 stack.extend(reversed(child))
+            elif isinstance(child, Node):
+                stack.append(child)
