@@ -15,7 +15,6 @@ from math import fsum
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
-from scipy.linalg.lapack import dgeqrf, dorgqr
 
 from irlx.transform.metric import as_matrix, root, rows_over_root, solved_by_root
 
@@ -49,10 +48,10 @@ class Factors:
         m = len(jacobian)
         half = root(hessian)
         columns = rows_over_root(jacobian, half).T
-        orthonormal, triangle = _factored(columns)
+        orthonormal, triangle = np.linalg.qr(columns, mode="complete")
         lengths = np.sqrt(np.einsum("ij,ij->j", columns, columns))
         sine = float(np.min(np.abs(np.diagonal(triangle)) / np.maximum(lengths, 1e-300), initial=1.0))
-        return cls(orthonormal[:, :m], orthonormal[:, m:], triangle, half, sine)
+        return cls(orthonormal[:, :m], orthonormal[:, m:], triangle[:m], half, sine)
 
     @property
     def lost(self) -> bool:
@@ -62,18 +61,6 @@ class Factors:
     def shortest(self, e: Array) -> Array:
         """L^-T Q1 R^-T e: the H-shortest d (n, ...) with J d = e (m, ...)."""
         return solved_by_root(self.root, self.along @ solve_triangular(self.triangle, e, trans=1))
-
-
-def _factored(columns: Array) -> tuple[Array, Array]:
-    """Q (n, n) and R (m, m) of columns (n, m), m <= n, what is below the diagonal of R being anything.
-
-    As numpy.linalg.qr does, for a third of the time that it takes with so few numbers.
-    """
-    n, m = columns.shape
-    reflected = np.zeros((n, n), order="F")
-    triangle, scales, _, _ = dgeqrf(columns)
-    reflected[:, :m] = triangle
-    return np.asarray(dorgqr(reflected, scales)[0]), np.asarray(triangle[:m])
 
 
 def refined_step(jacobian: Array, twist: Array, gradient: Array, hessian: Array) -> Array:
