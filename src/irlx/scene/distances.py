@@ -221,13 +221,15 @@ class Distances:
         """What the looks so far tell."""
         return Known(self._last, self._least)
 
-    def surely_clear(self, q: Array, before: Known, within: Array) -> bool:
-        """Whether posture q (n,) surely has no pair nearer than `within` (K,) m, by what was known `before`
-        and by the last look; never where obstacles move."""
+    def surely_clear(self, q: Array, before: Known, within: Array) -> int:
+        """How many of the first of postures q (N, n) surely have no pair nearer than `within` (K,) m, by what
+        was known `before` and by the last look; none where obstacles move."""
         if self._fastest > 0.0:
-            return False
+            return 0
         first = before.least - self._levers.moved(before.at, q)
-        return bool(np.all(np.maximum(first, self._least - self._levers.moved(self._last, q)) >= within))
+        least = np.maximum(first, self._least - self._levers.moved(self._last, q))
+        sure = np.all(least >= within, axis=1)
+        return len(q) if np.all(sure) else int(np.argmin(sure))
 
     def keeps_between(self, q: Array, room: Array) -> bool:
         """Whether no pair loses more than its `room` (K,) m half way from one row of q (N, n) to the next."""

@@ -234,20 +234,26 @@ class Clearance:
     ) -> tuple[int, TooNear] | None:
         """The first of postures q (N, n) at which something is `found`. Not asked is where surely no pair is
         nearer than `within` (K,) m: a look at a posture also tells of those before and behind it."""
-        distances, row, last = self.distances, 0, len(q) - 1
+        distances, row, last, ahead = self.distances, 0, len(q) - 1, 1
+        if distances.moves:
+            looks = ((k, found(k)) for k in range(len(q)))
+            return next(((k, there) for k, there in looks if there is not None), None)
         while row <= last:
-            if not distances.moves:
-                row += distances.clear_rows(q[row : row + _AHEAD], within)
+            clear = distances.clear_rows(q[row : row + _AHEAD], within)
+            row += clear
             if row > last:
                 return None
-            before = distances.known
-            behind = found(row + 1) if row < last and not distances.moves else None
-            here = None if distances.surely_clear(q[row], before, within) else found(row)
-            if here is not None:
-                return row, here
-            if behind is not None:
-                return row + 1, behind
-            row += 1 if distances.moves else 2
+            # A look tells of about as many rows before it as behind it.
+            ahead = max(ahead, 3 * clear // 4)
+            at = min(row + ahead, last)
+            before, there = distances.known, found(at)
+            row += distances.surely_clear(q[row:at], before, within)
+            if row < at:
+                ahead = (at - row) // 2
+            elif there is not None:
+                return row, there
+            else:
+                row += 1
         return None
 
     def untouched(self, q: Array) -> bool:
