@@ -22,6 +22,7 @@ from irlx.language.references import Reference, RoutineScope
 from irlx.language.suppression import Ignore, after_ignoring
 from irlx.language.switches import check_freeze, check_switches
 from irlx.language.symbols import Symbol
+from irlx.language.uncollected import uncollected
 
 __all__ = [
     "Analysis",
@@ -83,6 +84,7 @@ class Analysis:
         return any(diagnostic.is_error for diagnostic in self.diagnostics)
 
 
+@uncollected()
 def analyse(
     source: SourceText,
     resolver: Resolver | None = None,

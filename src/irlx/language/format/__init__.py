@@ -14,10 +14,10 @@ from irlx.language.format.reading import Reading
 from irlx.language.format.render import render
 from irlx.language.format.repair import REPAIRED, repaired
 from irlx.language.format.trivia import Tokens, UnexpectedToken
-from irlx.language.format.uncollected import uncollected
 from irlx.language.moves import check_move
 from irlx.language.parser import Parse, parse
 from irlx.language.source import source_text
+from irlx.language.uncollected import uncollected
 
 if TYPE_CHECKING:
     from irlx.language.analysis import CellNames
