@@ -24,7 +24,13 @@ def test_it_is_as_before_behind_a_check(collecting: bool) -> None:
 
 def test_it_rests_meanwhile_and_goes_on_behind_an_error() -> None:
     gc.enable()
-    with pytest.raises(KeyError), uncollected():
-        assert not gc.isenabled()
+    seen = list[bool]()
+
+    def fail() -> None:
+        seen.append(gc.isenabled())
         raise KeyError
+
+    with pytest.raises(KeyError), uncollected():
+        fail()
+    assert seen == [False]
     assert gc.isenabled()
