@@ -17,6 +17,7 @@ from irlx.pacing.path_motion import PacedPath
 from irlx.pipeline import Execution
 from irlx.robot.kinematics import Kinematics
 from irlx.transform.tick import TickSolver
+from irlx.transform.undisturbed import UndisturbedTick
 
 LINES = """MOVE LIN (441, 200, 324); MOVE LIN (480, 140, 364) SPEED := 120; MOVE LIN (401, 230, 300);
 MOVE CIRCLE (441, 180, 324), (481, 230, 300); MOVE LIN (441, 200, 324), (420, 160, 340), (450, 220, 300);
@@ -61,7 +62,8 @@ def test_rows_lie_on_the_run_at_their_ticks(tmp_path, body) -> None:
 def test_no_tick_is_solved_by_itself(tmp_path, monkeypatch, body) -> None:
     """What saves the time, counted: no tick is solved, and the model is asked less than half as often."""
     job, count = prepared(tmp_path, body), Counter()
-    for of, name in ((Kinematics, "tool_difference"), (Kinematics, "tool_pose"), (TickSolver, "solve")):
+    asked_of = ((Kinematics, "tool_difference"), (Kinematics, "tool_pose"))
+    for of, name in (*asked_of, (TickSolver, "solve"), (UndisturbedTick, "solve")):
         own = getattr(of, name)
 
         def counted(self, *asked, own=own, which=name):

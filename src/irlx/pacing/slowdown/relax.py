@@ -36,6 +36,8 @@ _PIN_PRICE = 1e5
 _OUTER_ROUNDS = 4
 _ACTIVE_ROUNDS = 40
 _LONGEST_STEP = 0.2
+_GOLDEN = 0.5 * (5.0**0.5 - 1.0)
+_SECTIONS = 12
 _ONTO_PATH_ROUNDS = 2
 _SETTLED = 1e-4
 
@@ -134,13 +136,28 @@ class _Relaxation:
                 best = change
                 break
             if self._sum(change) > least:
-                change = 0.5 * (best + change)
+                change = self._lowest_between(best, change)
                 found = self._hinges(change)
             best, least = min((best, least), (change, self._sum(change)), key=lambda found: found[1])
             active = found
         change = best
         largest = float(np.max(np.abs(change), initial=0.0))
         return change[1:-1] * min(1.0, _LONGEST_STEP / max(largest, 1e-300))
+
+    def _lowest_between(self, good: Array, change: Array) -> Array:
+        """The change with the least sum on the way from a good one to another that is worse.
+
+        The sum is convex: on the way to the worse one it falls first, and golden sections find where it ends.
+        """
+        way = change - good
+        low, high = 0.0, 1.0
+        for _ in range(_SECTIONS):
+            inner, outer = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
+            if self._sum(good + inner * way) < self._sum(good + outer * way):
+                high = outer
+            else:
+                low = inner
+        return good + 0.5 * (low + high) * way
 
     def _sum(self, change: Array) -> float:
         """What is minimised, at a change (N + 1, f) of the postures."""
