@@ -106,7 +106,7 @@ def test_the_objective_falls(name: str, smoothing: Smoothing) -> None:
 
 @pytest.mark.parametrize("smoothing", SMOOTHINGS[1:])
 def test_a_start_that_is_off_by_rounding_leads_to_the_same_objective(smoothing: Smoothing) -> None:
-    """Full steps of Newton's method went to and fro between sets of hinges, halved ones stopped on the way."""
+    """Full steps of Newton's method went to and fro between sets of hinges, halved ones stopped too soon."""
     of = case("koch11")
     ends = [moved_by_rounding(of, seed).relaxed(smoothing) for seed in range(8)]
     found = [objective(of, end, smoothing) for end in ends]
