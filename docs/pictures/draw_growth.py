@@ -116,6 +116,8 @@ def fill(axes: Axes, panel: Panel, stored: Mapping[str, Any]) -> None:
         kind, _, name = where.partition(": ")
         x, y = np.array(stored["curves"][kind][name], dtype=float).T
         told = f"{label}  $\\propto x^{{{stored['exponents'][kind][name]:.2f}}}$"
+        # Of a short program no memory may be left to see, which has no place in these axes.
+        x, y = x[y > 0.0], y[y > 0.0]
         axes.loglog(x, y, "o-", color=colour, linewidth=1.4, markersize=3.6, label=told)
         spans.append((x.min(), x.max(), y.min(), y.max()))
     starts, ends, lows, highs = zip(*spans, strict=True)
