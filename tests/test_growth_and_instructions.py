@@ -32,6 +32,7 @@ def compared(found, stored=None, now=None, then=None):
 # ---- comparison with stored counts
 
 
+@pytest.mark.req("BEN-04")
 def test_two_per_cent_may_be_lost_and_no_more():
     stored = {"a": 1_000_000, "b": 1_000_000, "c": 1_000_000}
     result = compared({"a": 1_020_000, "b": 1_020_001, "c": 500_000}, stored)
@@ -76,6 +77,7 @@ def test_counts_come_back_from_their_file(tmp_path):
     assert Counts.read(tmp_path / "counts.json") == counts
 
 
+@pytest.mark.req("BEN-04")
 def test_every_piece_of_work_has_a_stored_count():
     from instructions import LIBRARIES
     from workloads import GROUPS
@@ -107,6 +109,7 @@ def test_marks_do_nothing_outside_of_valgrind():
 # ---- growth
 
 
+@pytest.mark.req("BEN-05")
 @pytest.mark.parametrize("power", [0.0, 1.0, 2.0, 1.5])
 def test_the_exponent_is_that_of_the_upper_part(power):
     from growth import exponent
@@ -115,6 +118,7 @@ def test_the_exponent_is_that_of_the_upper_part(power):
     assert exponent(curve) == pytest.approx(power, abs=1e-12)
 
 
+@pytest.mark.req("BEN-05")
 def test_the_document_has_what_is_stored_and_reasons_for_what_is_worse_than_linear():
     from growth import DOCUMENT, STORED, exponent, with_table
 

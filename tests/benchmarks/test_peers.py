@@ -78,6 +78,7 @@ def test_limits_are_those_of_the_urdf(panda):
     assert speed.tolist() == [axis.speed for axis in axes]
 
 
+@pytest.mark.req("BEN-01")
 @pytest.mark.parametrize("case", ["pacer", "run", "record", "cyclic"])
 def test_irlx_is_where_the_task_says_at_every_tick(found, judge, case):
     told, q = found[case]
@@ -139,6 +140,7 @@ class StandsStill:
         return {"cpu": 1.0, "wall": 1.0, "ticks": len(q), "solves": len(q)}
 
 
+@pytest.mark.req("BEN-01")
 def test_who_is_off_ends_the_comparison(judge, tmp_path):
     workers = dict.fromkeys(("irlx", "pink", "mink", "placo"), StandsStill())
     with pytest.raises(SystemExit, match=r"irlx, pacer, 1 ms: off by 0\.4\d* m"):

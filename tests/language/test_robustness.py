@@ -165,6 +165,7 @@ HOSTILE = {
 
 
 @pytest.mark.req("QA-08")
+@pytest.mark.req("BEN-03")
 @pytest.mark.parametrize("size", [6_000, pytest.param(20_000, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", HOSTILE)
 def test_hostile_programs_end_soon(name, size):
