@@ -174,16 +174,6 @@ def names_around(path: PathLike) -> tuple[DataListResolver, CellNames]:
     return _ListFiles(file), lambda root: _found_names(file, root)
 
 
-def analyse_file(
-    path: PathLike, cell: PathLike | None = None, joints: tuple[str, ...] | None = None
-) -> Analysis:
-    """Analysis of a program, module or data list file, with lints; `joints` are those of its robot, if known.
-
-    None: those of the cell that a run would find. Raises ProgramError where the file cannot be read.
-    """
-    return analyse_with_program(path, cell, joints)[0]
-
-
 def analyse_text(text: str, path: PathLike, cell: PathLike | Cell | None = None) -> Analysis:
     """Analysis, with lints, of a text as if it stood in a file at `path`, as `load_text` takes it."""
     file = Path(path)
@@ -196,7 +186,11 @@ def analyse_text(text: str, path: PathLike, cell: PathLike | Cell | None = None)
 def analyse_with_program(
     path: PathLike, cell: PathLike | None = None, joints: tuple[str, ...] | None = None
 ) -> tuple[Analysis, Program | None]:
-    """What `analyse_file` gives, and the program that `load` would give where it is one without errors."""
+    """Analysis, with lints, of a file, and the program that `load` would give where it is one without errors.
+
+    The file is a program, a module or a data list. `joints` are those of its robot, None: those of the cell
+    that a run would find. Raises ProgramError where the file cannot be read.
+    """
     file = Path(path)
     content, files = read_file(file), _Beside(file)
     known = partial(_found_joints, file) if joints is None else joints

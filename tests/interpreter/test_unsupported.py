@@ -2,11 +2,11 @@
 
 import pytest
 
-from irlx.interpreter.asking import ASKING
 from irlx.interpreter.rotations import FUNCTIONS
 from irlx.interpreter.support import unsupported
 from irlx.language import builtins
 from irlx.language.analysis import analyse
+from irlx.language.builtins import ASKING_FUNCTIONS
 from irlx.language.source import source_text
 
 START = "VAR POSITION: p := (1, 2, 3); MAIN_JOINT: j; BOOL: b; INT: i := 1; REAL: x;"
@@ -24,7 +24,7 @@ def program(declarations, body):
 
 @pytest.mark.req("LANG-34")
 def test_every_function_is_executed():
-    assert {*builtins.FUNCTIONS} - {"eof"} <= {*FUNCTIONS, *ASKING, *builtins.TYPES}
+    assert {*builtins.FUNCTIONS} - {"eof"} <= {*FUNCTIONS, *ASKING_FUNCTIONS, *builtins.TYPES}
 
 
 @pytest.mark.parametrize("type", ["SEMAPHORE", "SIGNAL"])

@@ -16,15 +16,12 @@ from irlx.blocks.reconfigure import ReconfigureBlock
 from irlx.blocks.signal import InputBlock, Port, SignalBlock, SignalKind, WaitBlock
 from irlx.blocks.targets import JointIncrement, JointTarget, PoseIncrement, Target
 from irlx.blocks.tool import ToolBlock, WeightsBlock
+from irlx.language.builtins import LIMIT_WORDS
 
 NEGLIGIBLE = 1e-12
 """Numbers smaller than this print as 0: they are what sin(180 degrees) leaves behind."""
 
-_SWITCH = {
-    LimitKind.POSITION: "JOINTLIMIT",
-    LimitKind.SPEED: "JOINTSPEEDLIMIT",
-    LimitKind.ACCELERATION: "JOINTACCELLIMIT",
-}
+_SWITCH = {kind: LIMIT_WORDS[kind.value] for kind in LimitKind}
 
 
 def block_text(block: Block, joint_units: Sequence[str]) -> str:

@@ -32,6 +32,7 @@ from irlx.interpreter.targets import origin_of, pose_of_answer, pose_target
 from irlx.interpreter.types import POSE, POSITION, REAL, Record, Type, joint_bounds
 from irlx.interpreter.values import ArrayValue, RecordValue
 from irlx.language import tree
+from irlx.language.builtins import ACTUAL_VARIABLES
 from irlx.language.obstacles import OBSTACLE_NAME, obstacle_name
 
 if TYPE_CHECKING:
@@ -43,10 +44,6 @@ _OF_LAST_MOVE: dict[str, tuple[int, float]] = {
     "r_distance_forw": (2, 1e3),
 }
 """System variables on the last move: which part of the answer they are, and its unit in that of programs."""
-ACTUAL = frozenset({"r_joint_act", "r_robtarget_act", "r_jbd", *_OF_LAST_MOVE})
-"""System variables that tell where the robot is and what it may do, casefolded."""
-ASKING = frozenset({"posture", "fk", "ik", "manipulability", "clearance"})
-"""Functions that ask the machine, casefolded."""
 
 Answer = tuple[float, ...]
 
@@ -232,7 +229,7 @@ class Asking:
     def _machine_for(self, name: tree.Name) -> None:
         """Raises InterpreterError, IRL590, in constants, which come before there is a machine to ask."""
         if self._expressions.context.assembler is None:
-            kind = "system variable" if name.key in ACTUAL else "function"
+            kind = "system variable" if name.key in ACTUAL_VARIABLES else "function"
             what = f"the {kind} {name.name} in a constant"
             raise fail("IRL590", self._expressions.source, name.span, what=what)
 

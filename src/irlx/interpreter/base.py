@@ -11,11 +11,11 @@ from irlx.interpreter.scope import Variable
 from irlx.interpreter.types import POSE, POSITION
 from irlx.interpreter.values import RecordValue
 from irlx.language import tree
+from irlx.language.ranges import UNIT_LENGTH
 
 if TYPE_CHECKING:
     from irlx.interpreter.context import Context
 
-_UNIT_LENGTH = 1e-6
 _NOWHERE: Vector = (0.0, 0.0, 0.0)
 
 
@@ -28,7 +28,7 @@ def rotation_parts(value: object, name: str, context: Context, node: tree.Node) 
         raise TypeError("frames are poses")
     at, turned = parts_of(value)
     length = norm(turned)
-    if abs(length - 1.0) > _UNIT_LENGTH:
+    if abs(length - 1.0) > UNIT_LENGTH:
         raise fail("IRL570", context.source, node.span, name=name, length=f"{length:.9g}")
     return at, turned
 

@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 from irlx.interpreter.code import Frame, Label, Step
 from irlx.interpreter.compiled import Compiled, Run, failing, first_failing
-from irlx.interpreter.conversion import count, finite, whole_number
+from irlx.interpreter.conversion import finite, whole_number
 from irlx.interpreter.errors import InterpreterError, fail
 from irlx.interpreter.functions import Function
 from irlx.interpreter.scope import Parameter, Routine
 from irlx.interpreter.types import BOOL, INT, Type
 from irlx.language import tree
+from irlx.language.words import count
 
 if TYPE_CHECKING:
     from irlx.interpreter.expressions import Expressions

@@ -73,7 +73,6 @@ class _Choice:
         self._selector = selector
         self._table: dict[Any, int] = {}
         self._others: list[tuple[int, Run, Run | None]] = []
-        self._rank = 0
 
     def add(self, bounds: tuple[Compiled, Compiled | None], branch: int) -> None:
         low, high = bounds

@@ -14,13 +14,13 @@ from irlx.interpreter.channels.open_file import OpenFile
 from irlx.interpreter.channels.text_reader import TextReader
 from irlx.interpreter.code import Frame, Step
 from irlx.interpreter.compiled import Compiled, Run, first_failing
-from irlx.interpreter.conversion import count
 from irlx.interpreter.errors import fail
 from irlx.interpreter.targets import origin_of
 from irlx.interpreter.types import BOOL, CHAR, INT, REAL, STRING, Type
 from irlx.interpreter.values import UNSET
 from irlx.language import tree
 from irlx.language.builtins import LAYOUT_BOUNDS, OPEN_MODES, SIMPLE_VALUE
+from irlx.language.words import count
 
 if TYPE_CHECKING:
     from irlx.interpreter.expressions import Expressions

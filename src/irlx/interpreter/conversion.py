@@ -13,12 +13,7 @@ from irlx.interpreter.errors import fail
 from irlx.interpreter.quaternion import norm
 from irlx.interpreter.types import CHAR, INT, ORIENTATION, REAL, STRING, Array, Record, Type
 from irlx.interpreter.values import ArrayValue, RecordValue, Value
-
-_UNIT_LENGTH = 1e-6
-INT_LIMIT = 2**63
-"""INT holds whole numbers from minus this to below this."""
-_INT_RANGE = "INT holds the whole numbers from -2^63 to 2^63 - 1"
-_REAL_RANGE = "REAL holds numbers up to 1.8E308"
+from irlx.language.ranges import INT_LIMIT, INT_RANGE, REAL_RANGE, UNIT_LENGTH
 
 
 @dataclass(frozen=True)
@@ -49,22 +44,17 @@ def fit(found: Compiled, expected: Type, where: Where) -> Compiled:
     return failing(fail("IRL222", where.source, where.span, **data), (found,))
 
 
-def count(number: int, noun: str, nouns: str = "") -> str:
-    """A number of things in words: ``1 value``, ``2 values``."""
-    return f"{number} {noun}" if number == 1 else f"{number} {nouns or noun + 's'}"
-
-
 def whole_number(value: int, what: str, where: Where) -> int:
     """The value where it fits INT. Raises InterpreterError, IRL503."""
     if not -INT_LIMIT <= value < INT_LIMIT:
-        raise fail("IRL503", where.source, where.span, what=what, type="INT", range=_INT_RANGE)
+        raise fail("IRL503", where.source, where.span, what=what, type="INT", range=INT_RANGE)
     return value
 
 
 def finite(value: Any, where: Where) -> Any:
     """The value where all its numbers are finite. Raises InterpreterError, IRL503."""
     if isinstance(value, float) and not isfinite(value):
-        raise fail("IRL503", where.source, where.span, what="the result", type="REAL", range=_REAL_RANGE)
+        raise fail("IRL503", where.source, where.span, what="the result", type="REAL", range=REAL_RANGE)
     if isinstance(value, RecordValue):
         for part in value.values:
             finite(part, where)
@@ -95,7 +85,7 @@ def unit_orientation(value: RecordValue, where: Where) -> RecordValue:
     """The orientation with its length made exactly 1; quaternions typed with 6 digits are meant so."""
     quaternion = value.reals()
     length = norm(quaternion)
-    if abs(length - 1.0) > _UNIT_LENGTH:
+    if abs(length - 1.0) > UNIT_LENGTH:
         raise fail("IRL230", where.source, where.span, length=f"{length:.9g}")
     return RecordValue(ORIENTATION, tuple(part / length for part in quaternion))
 

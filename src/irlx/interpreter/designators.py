@@ -10,18 +10,18 @@ from typing import TYPE_CHECKING, Any
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.interpreter.code import Frame
 from irlx.interpreter.compiled import Compiled, Run
-from irlx.interpreter.conversion import count
 from irlx.interpreter.errors import InterpreterError, fail
 from irlx.interpreter.scope import Followed, Local, PartCell, Routine, Signal, SlotCell, Variable
 from irlx.interpreter.system_names import system_name
 from irlx.interpreter.types import CHAR, INT, STRING, Array, Record, Simple, Type
 from irlx.interpreter.values import UNSET, ArrayValue, has_arrays, is_set, replaced, share, unset_part
 from irlx.language import tree
+from irlx.language.builtins import FOLLOWED
+from irlx.language.words import count
 
 if TYPE_CHECKING:
     from irlx.interpreter.expressions import Expressions
 
-FOLLOWED = "a system variable that the robot follows"
 """What R_TOOL and R_WEIGHTS are for messages."""
 _NOT_CONSTANT = "a bound or constant that is not the same in every call"
 

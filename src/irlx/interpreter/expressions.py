@@ -6,17 +6,15 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 from irlx.diagnostics import SourceText
-from irlx.interpreter.asking import ACTUAL, ASKING, Asking
+from irlx.interpreter.asking import Asking
 from irlx.interpreter.calls import Calls
 from irlx.interpreter.channel_access import end_of_file
 from irlx.interpreter.code import Frame, Step
 from irlx.interpreter.compiled import Compiled, Run, constant, failing, first_failing, folded
 from irlx.interpreter.context import Context
 from irlx.interpreter.conversion import (
-    INT_LIMIT,
     Where,
     assemble,
-    count,
     fit,
     part_type,
     parts_needed,
@@ -31,9 +29,11 @@ from irlx.interpreter.scope import Routine, Scope
 from irlx.interpreter.types import BOOL, INT, ORIENTATION, REAL, STRING, Array, Record, Type
 from irlx.interpreter.values import Value, has_arrays
 from irlx.language import tree
-from irlx.language.builtins import BARE_FUNCTIONS
+from irlx.language.builtins import ACTUAL_VARIABLES, ASKING_FUNCTIONS, BARE_FUNCTIONS
 from irlx.language.checking.operators import aggregate_type, values_in_parentheses
 from irlx.language.obstacles import own_nodes
+from irlx.language.ranges import INT_LIMIT
+from irlx.language.words import count
 
 _LITERALS = (tree.IntLiteral, tree.RealLiteral, tree.BoolLiteral, tree.StringLiteral)
 
@@ -135,8 +135,10 @@ class Expressions:
             reads = signal is not None and signal.is_input
             key = node.base.key
             bare = key in BARE_FUNCTIONS and self.scope.found(key) is None
-            return reads or bare or key in ACTUAL or self.is_routine(node)
-        asks = isinstance(node, tree.FunctionCall) and (node.name.key in ASKING or node.name.key == "eof")
+            return reads or bare or key in ACTUAL_VARIABLES or self.is_routine(node)
+        asks = isinstance(node, tree.FunctionCall) and (
+            node.name.key in ASKING_FUNCTIONS or node.name.key == "eof"
+        )
         return asks or self.is_routine(node)
 
     def is_routine(self, node: tree.Node) -> bool:
@@ -173,7 +175,7 @@ class Expressions:
 
     def _designated(self, node: tree.Designator) -> Compiled:
         key = node.base.key
-        if key in ACTUAL:
+        if key in ACTUAL_VARIABLES:
             return self._asking.actual(node)
         signal = self.designators.signal(node.base)
         if signal is not None and signal.is_input and not node.selectors:
@@ -288,7 +290,7 @@ class Expressions:
         routine = self.scope.found(name.key)
         if isinstance(routine, Routine):
             return self._calls.function(routine, arguments, node)
-        if name.key in ASKING:
+        if name.key in ASKING_FUNCTIONS:
             return self._asking.call(name, arguments, node)
         if name.key == "eof":
             return end_of_file(self, arguments, node)

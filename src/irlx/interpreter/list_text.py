@@ -10,8 +10,7 @@ from irlx.interpreter.scope import Variable
 from irlx.interpreter.values import ArrayValue, RecordValue, Unset, Value, is_set, unset_part
 from irlx.language import tree
 from irlx.language.data_lists import ImportedList
-
-_LEAST = -(2**63)
+from irlx.language.ranges import INT_LIMIT
 
 
 @dataclass(frozen=True)
@@ -76,7 +75,7 @@ def value_text(value: Value) -> str:
             return "TRUE" if value else "FALSE"
         case int():
             # The least INT has no literal: its opposite is none.
-            return f"{value + 1} - 1" if value == _LEAST else str(value)
+            return f"{value + 1} - 1" if value == -INT_LIMIT else str(value)
         case float():
             return repr(value)
         case str():

@@ -15,12 +15,7 @@ from irlx.interpreter.targets import origin_of
 from irlx.interpreter.types import Type
 from irlx.interpreter.values import RecordValue
 from irlx.language import tree
-
-_LIMIT_TYPES = {
-    "POSITION": ("main_joint_min", "main_joint_max"),
-    "SPEED": ("main_joint_speed_min", "main_joint_speed_max"),
-    "ACCELERATION": ("main_joint_accel_min", "main_joint_accel_max"),
-}
+from irlx.language.builtins import LIMIT_TYPES
 
 Wanted: TypeAlias = "list[tuple[tree.Node, Callable[[], Compiled]]]"
 """Expressions of a statement, each with what compiles it."""
@@ -72,7 +67,7 @@ class MotionParts:
         return JointTarget(si_values(value, self._context.setting))
 
     def _range(self, node: tree.LimitSwitch | tree.WithLimit) -> Wanted:
-        types = (self._type(key) for key in _LIMIT_TYPES[node.kind])
+        types = (self._type(key) for key in LIMIT_TYPES[node.kind])
         pairs = zip((node.lower, node.upper), types, strict=True)
         return [(bound, partial(self._expressions.value, bound, type)) for bound, type in pairs]
 

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 
 from irlx.interpreter.code import Frame
 from irlx.interpreter.compiled import Compiled, Run, failing, folded
-from irlx.interpreter.conversion import INT_LIMIT, Where, finite, whole_number
+from irlx.interpreter.conversion import Where, finite, whole_number
 from irlx.interpreter.errors import fail
 from irlx.interpreter.functions import (
     compose,
@@ -23,6 +23,7 @@ from irlx.interpreter.functions import (
 from irlx.interpreter.quaternion import Vector, multiply, rotate
 from irlx.interpreter.types import BOOL, CHAR, INT, ORIENTATION, POSE, POSITION, REAL, STRING, Type
 from irlx.interpreter.values import RecordValue
+from irlx.language.ranges import INT_LIMIT
 
 Apply: TypeAlias = "Callable[[Any, Any], Any]"
 

@@ -46,9 +46,6 @@ class Local:
     constant: bool = False
 
 
-Stored: TypeAlias = "Variable | Local"
-
-
 class SlotCell:
     """A local variable that a call was given by reference."""
 

@@ -10,8 +10,8 @@ from irlx.interpreter.system_names import LATER_TYPES
 from irlx.interpreter.types import JOINT_RECORDS, REAL, Array, Record, Type, ambiguous_field, joint_type
 from irlx.interpreter.values import leaves
 from irlx.language import tree
+from irlx.language.ranges import MOST_ELEMENTS
 
-MOST_ELEMENTS = 10_000_000
 """Values that an array may hold, those of its elements counted one by one."""
 
 

@@ -32,10 +32,6 @@ class RecordValue:
     type: Record
     values: tuple[Value, ...]
 
-    def field(self, key: str) -> Value:
-        """Value of a field by its casefolded name."""
-        return self.values[self.type.index[key]]
-
     def reals(self) -> tuple[float, ...]:
         """The fields of a record of numbers as floats."""
         return tuple(float(value) for value in self.values if isinstance(value, int | float))

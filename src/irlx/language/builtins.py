@@ -3,9 +3,15 @@
 from __future__ import annotations
 
 __all__ = [
+    "ACTUAL_VARIABLES",
+    "ASKING_FUNCTIONS",
     "BARE_FUNCTIONS",
+    "FOLLOWED",
+    "FOLLOWED_VARIABLES",
     "FUNCTIONS",
     "LAYOUT_BOUNDS",
+    "LIMIT_TYPES",
+    "LIMIT_WORDS",
     "MOVE_PARAMETERS",
     "OPEN_MODES",
     "PORT_NAME",
@@ -44,6 +50,9 @@ FUNCTIONS = _table(
 BARE_FUNCTIONS = frozenset({"eof"})
 """Predefined functions that may be called by their name alone, casefolded."""
 
+ASKING_FUNCTIONS = frozenset({"posture", "fk", "ik", "manipulability", "clearance"})
+"""Predefined functions that ask the robot, casefolded."""
+
 PROCEDURES = _table("OPEN CLOSE READ WRITE WRITELN")
 """Predefined procedures, casefolded name to spelling."""
 
@@ -72,6 +81,27 @@ SYSTEM_VARIABLES = _table(
     " R_PROFILE R_OVERRIDE"
 )
 """System variables and defaults of the motion parameters, casefolded name to spelling."""
+
+ACTUAL_VARIABLES = frozenset(
+    {"r_robtarget_act", "r_joint_act", "r_move_time", "r_distance_forw", "r_distance_back", "r_jbd"}
+)
+"""System variables that tell where the robot is, how its last move went and what it may do, casefolded."""
+
+FOLLOWED_VARIABLES = frozenset({"r_tool", "r_weights"})
+"""System variables that the robot follows, casefolded: only assignments set them."""
+
+FOLLOWED = "a system variable that the robot follows"
+"""What messages call one of these."""
+
+LIMIT_WORDS = {"POSITION": "JOINTLIMIT", "SPEED": "JOINTSPEEDLIMIT", "ACCELERATION": "JOINTACCELLIMIT"}
+"""Words that limit the joints, by what they limit."""
+
+LIMIT_TYPES = {
+    "POSITION": ("main_joint_min", "main_joint_max"),
+    "SPEED": ("main_joint_speed_min", "main_joint_speed_max"),
+    "ACCELERATION": ("main_joint_accel_min", "main_joint_accel_max"),
+}
+"""Types of the lower and of the upper bound of such a limit, casefolded, by what it limits."""
 
 PORT_NAME = re.compile(r"a?(?:in|out)_[0-9]+")
 """Casefolded names of ports."""

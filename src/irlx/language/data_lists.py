@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 from irlx.diagnostics import Diagnostic, IrlxError, Place, Related, SourceText, Span, report
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.language import tree
-from irlx.language.builtins import FUNCTIONS, SYSTEM_VARIABLES, TYPES, is_port_name
+from irlx.language.builtins import ASKING_FUNCTIONS, FUNCTIONS, SYSTEM_VARIABLES, TYPES, is_port_name
 from irlx.language.obstacles import own_nodes
 from irlx.language.parser import Parse, parse
 from irlx.language.scope import Scope
@@ -22,8 +22,6 @@ DataListResolver: TypeAlias = Callable[[str, Place], SourceText]
 
 Raises IrlxError where there is none; its diagnostics become findings as they are.
 """
-
-_ASKS_THE_ROBOT = frozenset({"posture", "fk", "ik", "manipulability", "clearance"})
 
 
 @dataclass(frozen=True)
@@ -196,7 +194,7 @@ class _ValueCheck:
         return words.get(symbol.kind, f"a {symbol.kind} of the program")
 
     def _function(self, name: tree.Name) -> None:
-        if name.key in _ASKS_THE_ROBOT:
+        if name.key in ASKING_FUNCTIONS:
             self._once("IRL245", name, what="which asks the robot")
         elif name.key in FUNCTIONS or name.key in TYPES or self._scope.type(name.key) is not None:
             return

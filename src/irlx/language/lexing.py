@@ -11,12 +11,12 @@ from typing import Any
 from irlx.diagnostics import Diagnostic, Place, SourceText, Span, report
 from irlx.language.comments import opens_another, repaired
 from irlx.language.keywords import keyword_table
+from irlx.language.ranges import INT_LIMIT
 from irlx.language.terminals import terminals
 from irlx.language.token import Token
 
 __all__ = ["Lexed", "is_open_string", "lex", "token_span"]
 
-LARGEST_INT = 2**63 - 1
 _SIGNS = {
     "==": ("EQUAL", "="),
     "!=": ("UNEQUAL", "<>"),
@@ -193,7 +193,7 @@ class _Lexer:
         elif token.type == "INT":
             digits = token.lstrip("0")
             # One more than the largest is left to the sign that may stand before it.
-            if len(digits) > 19 or (digits and int(digits) > LARGEST_INT + 1):
+            if len(digits) > 19 or (digits and int(digits) > INT_LIMIT):
                 self.add("IRL113", span, type="INT")
         elif isinf(float(token)):
             self.add("IRL113", span, type="REAL")

@@ -7,6 +7,7 @@ from typing import Any
 
 from irlx.diagnostics import Diagnostic, Place, SourceText, Span, report
 from irlx.language import tree
+from irlx.language.builtins import LIMIT_WORDS
 
 __all__ = ["check_move"]
 
@@ -72,8 +73,7 @@ def _clauses(move: tree.Move) -> Iterator[tuple[str, Span, dict[str, Any]]]:
 def _clause_kind(clause: tree.WithClause) -> str:
     match clause:
         case tree.WithLimit(kind=kind):
-            words = {"POSITION": "JOINTLIMIT", "SPEED": "JOINTSPEEDLIMIT", "ACCELERATION": "JOINTACCELLIMIT"}
-            return words[kind]
+            return LIMIT_WORDS[kind]
         case tree.WithReconfiguration():
             return "RECONFIGURATION"
         case tree.WithCriterion(name=name):

@@ -6,10 +6,9 @@ from typing import Any
 
 from irlx.diagnostics import Diagnostic, Place, Related, SourceText, Span, report
 from irlx.language import tree
+from irlx.language.builtins import LIMIT_WORDS
 
 __all__ = ["check_freeze", "check_switches"]
-
-_LIMIT_WORDS = {"POSITION": "JOINTLIMIT", "SPEED": "JOINTSPEEDLIMIT", "ACCELERATION": "JOINTACCELLIMIT"}
 
 
 def check_switches(program: tree.Program, source: SourceText) -> list[Diagnostic]:
@@ -58,9 +57,9 @@ def _switched(node: tree.Node) -> tuple[str, bool] | None:
     """The switch that a statement turns, by its words, and whether on or off."""
     match node:
         case tree.LimitSwitch(kind=kind):
-            return _LIMIT_WORDS[kind], True
+            return LIMIT_WORDS[kind], True
         case tree.LimitSwitchEnd(kind=kind):
-            return _LIMIT_WORDS[kind], False
+            return LIMIT_WORDS[kind], False
         case tree.FreezeStart() | tree.FreezeEnd():
             return "FREEZESTART", isinstance(node, tree.FreezeStart)
         case tree.CyclicStart() | tree.CyclicEnd():

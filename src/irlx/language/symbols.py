@@ -10,7 +10,7 @@ from irlx.diagnostics import SourceText
 from irlx.language import tree
 from irlx.language.types import Signature, Type
 
-__all__ = ["Routine", "Symbol", "SymbolKind", "declared_symbols", "label_names", "parameter_symbols"]
+__all__ = ["Routine", "Symbol", "SymbolKind", "declared_symbols", "parameter_symbols"]
 
 SymbolKind: TypeAlias = Literal[
     "variable",
@@ -80,10 +80,3 @@ def parameter_symbols(routine: Routine) -> Iterator[Symbol]:
     for parameter in routine.parameters:
         for name in parameter.names:
             yield Symbol(name, "parameter", parameter)
-
-
-def label_names(body: Iterable[tree.Statement]) -> Iterator[tree.Name]:
-    """All labels of a body, also those inside structured statements."""
-    for node in tree.walk(*body):
-        if isinstance(node, tree.Label):
-            yield node.name

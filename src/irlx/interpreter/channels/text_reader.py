@@ -7,8 +7,8 @@ from collections.abc import Callable
 from typing import Any
 
 from irlx.interpreter.channels.fault import ChannelFault
-from irlx.interpreter.conversion import INT_LIMIT
 from irlx.interpreter.operators import LONGEST_TEXT
+from irlx.language.ranges import INT_LIMIT
 
 _LONGEST_WORD = 2_000
 _SHOWN = 40

@@ -9,7 +9,6 @@ from irlx.language import tree
 from irlx.language.builtins import LAYOUT_BOUNDS
 from irlx.language.checking.context import NOTHING, Context, Typed
 from irlx.language.checking.names import Constant, Entry
-from irlx.language.checking.words import count
 from irlx.language.obstacles import OBSTACLE_NAME, obstacle_name, unknown_obstacle
 from irlx.language.references import Reference
 from irlx.language.types import (
@@ -23,6 +22,7 @@ from irlx.language.types import (
     Type,
     is_number,
 )
+from irlx.language.words import count
 
 _OPTIONAL_PARTS = frozenset({"joint", "robtarget"})
 """Constructors that may leave out all but the first part."""

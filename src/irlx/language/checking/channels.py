@@ -7,8 +7,8 @@ from irlx.language import tree
 from irlx.language.builtins import OPEN_MODES, SIMPLE_VALUE, STANDARD_CHANNELS
 from irlx.language.checking.context import Typed
 from irlx.language.checking.expressions import Expressions
-from irlx.language.checking.words import count
 from irlx.language.types import BOOL, CHAR, FILE, INT, REAL, STRING, UNKNOWN, Type, holds_files
+from irlx.language.words import count
 
 _WRITTEN: tuple[Type, ...] = (INT, REAL, CHAR, STRING, BOOL)
 

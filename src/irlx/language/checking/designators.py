@@ -6,10 +6,9 @@ from dataclasses import replace
 
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.language import tree
-from irlx.language.builtins import BARE_FUNCTIONS
+from irlx.language.builtins import BARE_FUNCTIONS, FOLLOWED
 from irlx.language.checking.context import NOTHING, Context, Typed
 from irlx.language.checking.names import Entry, port_entry
-from irlx.language.checking.words import count
 from irlx.language.references import Access, Reference
 from irlx.language.types import (
     ANY_BOUNDS,
@@ -25,8 +24,8 @@ from irlx.language.types import (
     longest_field,
     same_type,
 )
+from irlx.language.words import count
 
-FOLLOWED = "a system variable that the robot follows"
 NOT_A_VALUE = {"procedure": "a procedure", "robot": "a robot"}
 
 

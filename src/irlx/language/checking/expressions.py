@@ -13,7 +13,6 @@ from irlx.language.checking.designators import Designators
 from irlx.language.checking.operators import (
     COMPARISONS,
     DIVISIONS,
-    INT_LIMIT,
     LOGIC,
     aggregate_type,
     binary_type,
@@ -24,10 +23,9 @@ from irlx.language.checking.operators import (
 )
 from irlx.language.checking.parentheses import Parentheses
 from irlx.language.checking.pascal import both_readings
+from irlx.language.ranges import INT_LIMIT, INT_RANGE, REAL_RANGE
 from irlx.language.types import BOOL, CHAR, INT, REAL, SEMAPHORE, STRING, UNKNOWN, Type, fits, is_number
 
-_INT_RANGE = "INT holds the whole numbers from -2^63 to 2^63 - 1"
-_REAL_RANGE = "REAL holds numbers up to 1.8E308"
 _SHORT = frozenset({"AND", "OR"})
 _OF_VALUES = frozenset({"IRL502", "IRL503", "IRL504"})
 
@@ -202,7 +200,7 @@ class Expressions(Designators, Parentheses, Calls):
         return found
 
     def _out_of_range(self, node: tree.Node, what: str, type: Type) -> Typed:
-        range = _INT_RANGE if type is INT else _REAL_RANGE
+        range = INT_RANGE if type is INT else REAL_RANGE
         self.add("IRL503", node, what=what, type=type.name, range=range)
         return Typed(type)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 from irlx.language import tree
-from irlx.language.builtins import MOVE_PARAMETERS
+from irlx.language.builtins import LIMIT_TYPES, MOVE_PARAMETERS
 from irlx.language.checking.context import Settled, Typed
 from irlx.language.checking.type_forms import TypeForms
 from irlx.language.frames import unknown_frame
@@ -33,11 +33,6 @@ _POSITIVE = frozenset(
 _NOT_NEGATIVE = frozenset({"jerk", "c_cp", "c_ptp"})
 _SHARES = frozenset({"speed_ptp", "acc_ptp", "override", "c_ptp"})
 
-LIMIT_TYPES = {
-    "POSITION": ("main_joint_min", "main_joint_max"),
-    "SPEED": ("main_joint_speed_min", "main_joint_speed_max"),
-    "ACCELERATION": ("main_joint_accel_min", "main_joint_accel_max"),
-}
 _FIXED_JOINTS = 6
 """A robot with more joints has many postures near each other for one pose."""
 

@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from irlx.language.builtins import SYSTEM_VARIABLES, is_port_name
+from irlx.language.builtins import ACTUAL_VARIABLES, FOLLOWED_VARIABLES, SYSTEM_VARIABLES, is_port_name
 from irlx.language.symbols import Symbol, SymbolKind
 from irlx.language.types import (
     BOOL,
@@ -30,12 +30,6 @@ _SYSTEM_TYPES: dict[str, Type] = {
     "r_profile": STRING,
 }
 """Types of the system variables that are no REAL, without those that depend on the robot."""
-
-_READ_ONLY = frozenset(
-    {"r_robtarget_act", "r_joint_act", "r_move_time", "r_distance_forw", "r_distance_back", "r_jbd"}
-)
-_FOLLOWED = frozenset({"r_tool", "r_weights"})
-"""What the robot follows: only assignments set it."""
 
 
 @dataclass(slots=True)
@@ -113,7 +107,9 @@ def system_names(
         "r_weights": joint_weights(joints),
     }
     for key in SYSTEM_VARIABLES:
-        kind = "system" if key in _READ_ONLY else "followed" if key in _FOLLOWED else "variable"
+        kind = (
+            "system" if key in ACTUAL_VARIABLES else "followed" if key in FOLLOWED_VARIABLES else "variable"
+        )
         names.values[key] = Entry(kind, of_robot.get(key) or _SYSTEM_TYPES.get(key, REAL))
     moving = {name for name, moves in frames.items() if moves} if isinstance(frames, Mapping) else ()
     for frame in frames or ():

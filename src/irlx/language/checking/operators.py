@@ -21,8 +21,6 @@ COMPARISONS = frozenset({"=", "<>", "<", ">", "<=", ">="})
 LOGIC = frozenset({"AND", "OR", "EXOR"})
 DIVISIONS = frozenset({"/", "DIV", "MOD"})
 
-INT_LIMIT = 2**63
-
 
 def _table() -> dict[tuple[str, str, str], Type]:
     table: dict[tuple[str, str, str], Type] = {}

@@ -8,10 +8,10 @@ from irlx.diagnostics import SourceText
 from irlx.language import tree
 from irlx.language.checking.context import NOTHING, Context, Trial, Typed
 from irlx.language.checking.names import Constant, Names
-from irlx.language.checking.words import count
+from irlx.language.ranges import UNIT_LENGTH
 from irlx.language.types import ORIENTATION, REAL, UNKNOWN, Array, Record, Type, is_number, same_type
+from irlx.language.words import count
 
-_UNIT_LENGTH = 1e-6
 _NO_FIT = frozenset({"IRL222", "IRL223"})
 
 
@@ -94,7 +94,7 @@ class Parentheses(Context):
         numbers = [part for part in quaternion if isinstance(part, int | float)]
         if len(numbers) == 4:
             length = hypot(*numbers)
-            if abs(length - 1.0) > _UNIT_LENGTH:
+            if abs(length - 1.0) > UNIT_LENGTH:
                 self.add("IRL230", node, length=f"{length:.9g}")
 
     # ---- values that could be of several types

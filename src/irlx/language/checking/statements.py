@@ -7,10 +7,9 @@ from dataclasses import replace
 from typing import Any
 
 from irlx.language import tree
-from irlx.language.builtins import PROCEDURES
+from irlx.language.builtins import FOLLOWED, PROCEDURES
 from irlx.language.checking.case_labels import twice_chosen
 from irlx.language.checking.channels import Channels
-from irlx.language.checking.designators import FOLLOWED
 from irlx.language.checking.motion import Motion
 from irlx.language.references import Reference
 from irlx.language.types import BOOL, CHAR, INT, REAL, STRING, UNKNOWN, Type, is_number, same_type

@@ -8,7 +8,7 @@ from typing import Any
 from irlx.diagnostics import Related
 from irlx.language import tree
 from irlx.language.checking.expressions import Expressions
-from irlx.language.checking.words import count
+from irlx.language.ranges import MOST_ELEMENTS
 from irlx.language.references import Reference
 from irlx.language.symbols import Symbol
 from irlx.language.types import (
@@ -27,8 +27,8 @@ from irlx.language.types import (
     joint_type,
     known_types,
 )
+from irlx.language.words import count
 
-_MOST_ELEMENTS = 10_000_000
 FIXED_TYPES = frozenset(known_types(None)) - frozenset(JOINT_RECORDS)
 """Predefined types that mean one thing and are not defined again."""
 
@@ -101,8 +101,8 @@ class TypeForms(Expressions):
 
     def _array(self, form: tree.ArrayType) -> Array:
         array = Array(tuple([self._bounds(d) for d in form.dimensions]), self.type_of(form.element))
-        if array.size > _MOST_ELEMENTS:
-            self.add("IRL507", form, size=array.size, most=_MOST_ELEMENTS)
+        if array.size > MOST_ELEMENTS:
+            self.add("IRL507", form, size=array.size, most=MOST_ELEMENTS)
         return array
 
     def _bounds(self, dimension: tree.Range) -> Bounds:

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from irlx.language import tree
-from irlx.language.builtins import MOVE_PARAMETERS
+from irlx.language.builtins import LIMIT_WORDS, MOVE_PARAMETERS
 from irlx.language.format.document import Doc, Fill, Group, Here, Indent, Line
 from irlx.language.format.expressions import ExpressionLayout
 
 __all__ = ["MotionLayout"]
 
-_LIMITS = ("JOINTLIMIT", "JOINTSPEEDLIMIT", "JOINTACCELLIMIT")
-_LIMIT_ENDS = ("JOINTLIMITEND", "JOINTSPEEDLIMITEND", "JOINTACCELLIMITEND")
+_LIMITS = tuple(LIMIT_WORDS.values())
+_LIMIT_ENDS = tuple(f"{word}END" for word in _LIMITS)
 
 
 class MotionLayout(ExpressionLayout):

@@ -15,6 +15,7 @@ from irlx.language.format.reading import Reading
 from irlx.language.lexing import Lexed
 from irlx.language.names import check_names
 from irlx.language.parser import Parse, parse
+from irlx.language.ranges import INT_LIMIT
 from irlx.language.source import source_text
 from irlx.language.suppression import read_ignores, without_ignored
 
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
 __all__ = ["DeclaredPorts", "declared_ports"]
 
 _ANY_PORT = re.compile(rf"\b{PORT_NAME.pattern}\b", re.IGNORECASE)
-_LARGEST_NUMBER = 2**63 - 1
 _ROUTINES = (tree.ProcedureDeclaration, tree.FunctionDeclaration)
 _ITEMS = (tree.VarDeclaration, tree.SignalDeclaration)
 
@@ -82,7 +82,7 @@ def _undeclared(
     return [
         tree.Name(span, name, name.casefold())
         for span, name in zip(spans, names, strict=True)
-        if span is not None and _number(name) <= _LARGEST_NUMBER
+        if span is not None and _number(name) < INT_LIMIT
     ]
 
 

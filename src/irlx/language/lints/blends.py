@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from irlx.diagnostics import Diagnostic, Place, Related, SourceText, Span, report
 from irlx.language import tree
-from irlx.language.builtins import PROCEDURES, is_port_name
+from irlx.language.builtins import ACTUAL_VARIABLES, FOLLOWED_VARIABLES, PROCEDURES, is_port_name
 from irlx.language.obstacles import own_nodes
 from irlx.language.symbols import declared_symbols, parameter_symbols
 
@@ -29,10 +29,6 @@ _STOPPING: dict[type[tree.Node], str] = {
     tree.CriterionEnd: "CRITERIONEND",
 }
 """Statements before which the robot stops, and what messages call them."""
-_FOLLOWED = frozenset({"r_tool", "r_weights"})
-_ACTUAL = frozenset(
-    {"r_joint_act", "r_robtarget_act", "r_move_time", "r_distance_forw", "r_distance_back", "r_jbd"}
-)
 _PRESENT = frozenset({"posture", "ik"})
 """Functions whose value depends on where the robot stands."""
 _LISTS = ("body", "otherwise", "default")
@@ -143,7 +139,7 @@ class _Line:
         if word is not None:
             return word
         match statement:
-            case tree.Assignment(target=target) if target.base.key in _FOLLOWED:
+            case tree.Assignment(target=target) if target.base.key in FOLLOWED_VARIABLES:
                 return f"setting {target.base.name}"
             case tree.Call(name=name) if name.key in PROCEDURES and name.key not in self.signals.routines:
                 return name.name
@@ -164,7 +160,7 @@ class _Line:
             return None
         for node in nodes:
             if isinstance(node, tree.Designator):
-                if node.base.key in _ACTUAL or self.signals.is_input(node.base.key):
+                if node.base.key in ACTUAL_VARIABLES or self.signals.is_input(node.base.key):
                     return f"reading {node.base.name}"
             elif isinstance(node, tree.FunctionCall) and node.name.key in _PRESENT:
                 return node.name.name

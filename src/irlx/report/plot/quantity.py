@@ -16,11 +16,6 @@ class Quantity(str, Enum):
     PATH_SPEED = "path-speed"
 
     @property
-    def of_joints(self) -> bool:
-        """Whether every joint has a curve of it."""
-        return self in JOINT_QUANTITIES
-
-    @property
     def per(self) -> str:
         """What follows the unit of a joint."""
         return _PER.get(self, "")
