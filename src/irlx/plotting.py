@@ -226,6 +226,7 @@ def _window(subjects: Sequence[Subject], window: tuple[float | None, float | Non
         t = subject.stream.t
         if not np.any((t >= low) & (t <= high)):
             end = float(t[-1]) if len(t) else 0.0
-            cause = f"{subject.name} has no sample from there on; it lasts {end:g} s"
+            where = "from there on" if low > end else f"from there to {high:g} s"
+            cause = f"{subject.name} has no sample {where}; it lasts {end:g} s"
             raise IrlxError(report("IRL006", option="--from", value=f"{low:g}", cause=cause))
     return low, high

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 from pathlib import Path
@@ -74,7 +74,7 @@ def reproduce(
     header = next(scan_stream(out))
     assert isinstance(header, StreamHeader)
     making = header.making
-    _check_known(out, header, files)
+    _check_known(out, header, {"files": files is not None, "input": isinstance(input, str)})
     source = _found(out, program, _source_name(out, header))
     job = prepare(
         source,
@@ -100,8 +100,9 @@ def reproduce(
         return _compared(out, again)
 
 
-def _check_known(path: Path, header: StreamHeader, files: PathLike | None) -> None:
-    missing = [_WORDS[name] for name in header.making.given if name != "files" or files is None]
+def _check_known(path: Path, header: StreamHeader, given: Mapping[str, bool]) -> None:
+    """Raises IrlxError, IRL731, for what the file does not say and is not `given` again, by its name."""
+    missing = [_WORDS[name] for name in header.making.given if not given.get(name)]
     if header.making == Making():
         missing.append("all that files of version 2 say")
     if missing:

@@ -184,6 +184,10 @@ def test_of_many_joints_the_busiest(inside, folder, run):
         (["a.irdata", "--show", "sped"], "IRL006: --show sped: not one of position, speed,"),
         (["a.irdata", "--show", ""], "IRL006: --show ''"),
         (["a.irdata", "--from", "9"], "--from 9: a.irdata has no sample from there on; it lasts 3.22 s"),
+        (
+            ["a.irdata", "--from", "1.0001", "--to", "1.0002"],
+            "--from 1.0001: a.irdata has no sample from there to 1.0002 s; it lasts 3.22 s",
+        ),
         (["a.irdata", "--from", "2", "--to", "1"], "--to 1: the end must lie behind the beginning, 2 s"),
         (["a.irdata", "--width", "9"], "IRL006: --width 9: needs 20 to 1000 columns"),
         (["a.irdata", "--width", "nan"], "IRL006: --width nan"),

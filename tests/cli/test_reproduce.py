@@ -128,6 +128,16 @@ def test_what_no_file_can_tell(folder: Path) -> None:
     assert caught.value.reason.code == "IRL731"
 
 
+def test_text_for_standard_in_is_given_again(folder: Path) -> None:
+    lines = TEXT.replace("BEGIN", " INT: n;\nBEGIN\n  READ(n);\n  WAIT n / 100 SEC;")
+    Path("p.irl").write_text(lines, encoding="utf-8")
+    irlx.run("p.irl", inputs="in.csv", input="7").save("p.irdata")
+    with pytest.raises(irlx.IrlxError, match=r"IRL731: .* with: the text for STANDARD_IN that Python gave"):
+        irlx.reproduce("p.irdata")
+    assert irlx.reproduce("p.irdata", input="7").same_bytes
+    assert not irlx.reproduce("p.irdata", input="9").reproduced
+
+
 @pytest.mark.parametrize(
     "option",
     [["-o", "x.csv"], ["--html", "x.html"], ["--tick", "5"], ["--explain-tick", "3"], ["--write-data"]],

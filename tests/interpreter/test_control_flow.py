@@ -86,6 +86,14 @@ WRONG = [
     ("FOR i := 1 TO 2.5 DO ENDFOR;", ("IRL222", "expected INT, found REAL", "2.5")),
     ("FOR i := 1 TO 3 STEP k DO ENDFOR;", ("IRL505", "STEP must be greater than 0, found 0", "k")),
     ("FOR i := 3 DOWNTO 1 STEP -1 DO ENDFOR;", ("IRL505", "STEP must be greater than 0, found -1", "-1")),
+    (
+        "k := -1234567890; FOR i := 1 TO 3 STEP k DO ENDFOR;",
+        ("IRL505", "STEP must be greater than 0, found -1234567890", "k"),
+    ),
+    (
+        "FOR x := -1.7E308 TO 1.7E308 STEP 1.E308 DO ENDFOR;",
+        ("IRL503", "the way from the first value of FOR to the last leaves the range of REAL", "1.7E308"),
+    ),
     ("IF j = 1 THEN ENDIF;", ("IRL501", "'j' has no value yet", "j")),
     ("RETURN 3;", ("IRL514", "RETURN has no value outside of a function", "RETURN 3")),
 ]

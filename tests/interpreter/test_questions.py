@@ -21,7 +21,7 @@ INT: n := 0; ROBTARGET: t; JOINT: both := JOINT((1, 2, 3));
 FUNCTION f(MAIN_JOINT: m): REAL; BEGIN n := n + 1; RETURN MANIPULABILITY(m) + n; ENDFCT;"""
 
 ANSWERS = {
-    AskPosture: (0.1, pi, -3 * pi),
+    AskPosture: (0.1, 1.5 * pi, -3.5 * pi),
     AskPose: (1.0, 2.0, 3.0, 0.0, 0.0, 1.0, 0.0),
     AskManipulability: (0.25,),
     AskPostureOf: (0.5, 0.6, 0.7),
@@ -81,6 +81,16 @@ def test_where_the_robot_is(asked):
     assert isinstance(posture, AskPosture)
     assert pose.posture == ANSWERS[AskPosture]
     assert move.target.position == pytest.approx((1.001, 1.998, 3.0), abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("degrees", "turns"),
+    [(0, 0), (180, 0), (-180, 0), (180.001, 1), (540, 1), (-540, -1), (540.001, 2), (-900.001, -3)],
+)
+def test_turns_are_counted_beyond_half_a_turn(asked, monkeypatch, degrees, turns):
+    monkeypatch.setitem(ANSWERS, AskPosture, (0.1, radians(degrees), 0.0))
+    *_, move = asked("t := R_ROBTARGET_ACT; MOVE LIN POSITION(t.turns[2], 0, 0);")
+    assert move.target.position[0] == pytest.approx(turns / 1000, abs=1e-12)
 
 
 def test_loops_ask_again_in_every_round(asked):

@@ -11,7 +11,7 @@ VAR INT: i, j; REAL: x; BOOL: b; STRING: s; CHAR: k; FILE: f; SEMAPHORE: sema :=
 POSITION: v; ORIENTATION: o; POSE: p; MAIN_JOINT: m; JOINT: jt; ROBTARGET: rt; ADD_JOINT: aj;
 MAIN_JOINT_MIN: lo; MAIN_JOINT_MAX: hi; MAIN_JOINT_SPEED_MIN: slo; MAIN_JOINT_SPEED_MAX: shi;
 MAIN_JOINT_ACCEL_MIN: alo; MAIN_JOINT_ACCEL_MAX: ahi; ARRAY [1..4] OF POSE: way;
-ARRAY [1..4] OF MAIN_JOINT: ms; ARRAY [1..6] OF REAL: bands;
+ARRAY [1..4] OF MAIN_JOINT: ms; ARRAY [1..i + 2] OF MAIN_JOINT: some; ARRAY [1..6] OF REAL: bands;
 INPUT BOOL: part AT 1; OUTPUT BOOL: lamp AT 2; OUTPUT REAL: spindle AT four; ANALOG INPUT: gauge AT 3;
 PROCEDURE pick(IN POSE: at; REAL: height; VAR INT: count); BEGIN count := count + 1; ENDPROC;
 PROCEDURE rest; BEGIN RETURN; ENDPROC;
@@ -74,6 +74,7 @@ GOOD = [
     "MOVE LIN PATH way;",
     "MOVE LIN PATH way WITH RECONFIGURATION ms;",
     "MOVE SPLINE PATH (p, v) WITH RECONFIGURATION (m, jt);",
+    "MOVE LIN PATH (p, v) WITH RECONFIGURATION some; MOVE LIN PATH way WITH RECONFIGURATION (m, some);",
     "MOVE_INC LIN (0, 0, 10); MOVE_INC PTP home;",
     "R_TOOL := home; R_BASE := ((0, 0, 0), (1, 0, 0, 0)); R_SPEED := 5; R_PROFILE := 'S_CURVE';",
     # redundancy

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from math import pi
+from math import ceil, copysign, pi
 from typing import TYPE_CHECKING, Any
 
 from irlx.blocks import (
@@ -46,6 +46,9 @@ _OF_LAST_MOVE: dict[str, tuple[int, float]] = {
 """System variables on the last move: which part of the answer they are, and its unit in that of programs."""
 
 Answer = tuple[float, ...]
+
+_SAME_TURN = 1e-9
+"""Part of a turn by which rounding may carry a joint beyond 180 degrees."""
 
 UNBOUNDED = 1e30
 """What R_JBD gives, in degrees or mm, for a joint without a bound: REAL holds no infinite numbers."""
@@ -115,10 +118,8 @@ class Asking:
 
         def robtarget(frame: Frame) -> RecordValue:
             values = zip(posture(frame), slides, strict=True)
-            # A posture from -180 to 180 degrees has made no turn.
-            counted = [0 if slide else int((abs(value) + pi) // (2 * pi)) for value, slide in values]
-            signed = [-n if value < 0 else n for n, value in zip(counted, posture(frame), strict=True)]
-            return RecordValue(type, (pose(frame), 0, ArrayValue(turns.type, list(signed)), empty))
+            counted = [0 if slide else _turns(value) for value, slide in values]
+            return RecordValue(type, (pose(frame), 0, ArrayValue(turns.type, [*counted]), empty))
 
         return robtarget
 
@@ -270,3 +271,9 @@ class Asking:
 def _bounded(side: RecordValue) -> RecordValue:
     """Bounds without infinite numbers."""
     return RecordValue(side.type, tuple(max(-UNBOUNDED, min(UNBOUNDED, real)) for real in side.reals()))
+
+
+def _turns(angle: float) -> int:
+    """Whole turns of a joint beyond +-180 degrees: none up to there, one from there to +-540 degrees; rad."""
+    beyond = ceil((abs(angle) - pi) / (2 * pi) - _SAME_TURN)
+    return int(copysign(max(beyond, 0), angle))

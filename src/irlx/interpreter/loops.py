@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
+from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from irlx.interpreter.code import Frame, Label, Step
@@ -11,6 +12,7 @@ from irlx.interpreter.compiled import Compiled, constant, first_failing
 from irlx.interpreter.errors import fail
 from irlx.interpreter.types import INT, REAL
 from irlx.language import tree
+from irlx.language.ranges import REAL_RANGE
 
 if TYPE_CHECKING:
     from irlx.interpreter.statements import Statements
@@ -64,10 +66,17 @@ def _begin(
         low, high, step = first(frame), last(frame), by(frame)
         if not step > 0:
             place = node.step or node
-            data = {"param": "STEP", "expected": "greater than 0", "value": f"{step:g}"}
+            data = {
+                "param": "STEP",
+                "expected": "greater than 0",
+                "value": str(step) if whole else f"{step:g}",
+            }
             raise fail("IRL505", source, place.span, **data)
         if whole:
             frame[slot] = iter(range(low, high + sign, sign * step))
+        elif not isfinite(high - low):
+            what = "the way from the first value of FOR to the last"
+            raise fail("IRL503", source, node.stop.span, what=what, type="REAL", range=REAL_RANGE)
         else:
             frame[slot] = _reals(low, sign * step, sign * (high - low) / step)
 

@@ -5,7 +5,7 @@ from irlx.diagnostics.codes.code import error, warning
 COMMAND = (
     error("IRL001", "no such file: {path}{near}", "give the path of an existing file"),
     error("IRL002", "cannot read {path}: {cause}"),
-    error("IRL003", "cannot write {path}: {cause}", "name another file with -o"),
+    error("IRL003", "cannot write {path}: {cause}", "name another file"),
     error("IRL004", "-o {path}: no format has the ending '{ending}'; known: {known}"),
     error("IRL005", "{option} {path} would overwrite an input of this run", "name another file"),
     error("IRL006", "{option} {value}: {cause}"),

@@ -86,9 +86,12 @@ class Motion(TypeForms):
     def _postures_of_path(self, clause: tree.WithReconfiguration, points: list[Type]) -> None:
         """One posture for each point, where both are written one by one or in arrays."""
         found = [self._listed(posture, self._postures()).type for posture in clause.targets]
-        targets, postures = sum(map(_number, points)), sum(map(_number, found))
-        if postures != targets and UNKNOWN not in (*points, *found):
-            self.add("IRL405", clause, targets=targets, postures=postures)
+        if UNKNOWN in (*points, *found):
+            return
+        targets, postures = ([_number(type) for type in types] for types in (points, found))
+        # An array whose bounds only a run tells has 0 elements here.
+        if 0 not in (*targets, *postures) and sum(postures) != sum(targets):
+            self.add("IRL405", clause, targets=sum(targets), postures=sum(postures))
 
     def _posture_left_open(self, move: tree.Move, target: tree.Expression, found: Typed) -> None:
         """Tell of a ROBTARGET that is reached in any posture."""
