@@ -81,12 +81,19 @@ def goal_of(arm, away: float, seed: int) -> np.ndarray:
     return arm.q + np.random.default_rng(seed).uniform(-1.0, 1.0, arm.n) * away
 
 
+WAYS: dict[tuple[int, bytes], ReturnWay] = {}
+"""Ways that have been looked for, by number of joints and goal: a dozen tests go along the same few."""
+
+
 def way_of(arm, goal: np.ndarray) -> ReturnWay:
-    free = np.ones(arm.n, dtype=bool)
-    model = Model(arm.kinematics, JointLimits.unlimited(arm.n), arm.weights, free)
-    way = return_way(model, arm.q, goal, ProxQpSolver())
-    assert way is not None
-    return way
+    known = arm.n, goal.tobytes()
+    if known not in WAYS:
+        free = np.ones(arm.n, dtype=bool)
+        model = Model(arm.kinematics, JointLimits.unlimited(arm.n), arm.weights, free)
+        way = return_way(model, arm.q, goal, ProxQpSolver())
+        assert way is not None
+        WAYS[known] = way
+    return WAYS[known]
 
 
 def fibre_of(arm, goal: np.ndarray) -> Fibre:

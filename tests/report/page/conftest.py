@@ -44,9 +44,18 @@ class Opened:
         self.page = page
         self.requests: list[str] = []
         self.complaints: list[str] = []
-        page.on("request", lambda request: self.requests.append(request.url))
-        page.on("pageerror", lambda error: self.complaints.append(str(error)))
-        page.on("console", self._hear)
+        self._listeners = {
+            "request": lambda request: self.requests.append(request.url),
+            "pageerror": lambda error: self.complaints.append(str(error)),
+            "console": self._hear,
+        }
+        for event, listener in self._listeners.items():
+            page.on(event, listener)
+
+    def leave(self):
+        """Hear nothing any more: the tab is used again."""
+        for event, listener in self._listeners.items():
+            self.page.remove_listener(event, listener)
 
     def _hear(self, message):
         # The driver, not the page, warns that pictures are read back from the (software) graphics card.
@@ -99,28 +108,76 @@ STATISTICS = """async coded => {
 }"""
 
 
+UNDRAWN = """
+const ofCanvas = HTMLCanvasElement.prototype.getContext;
+HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+    if (!kind.startsWith('webgl')) return ofCanvas.call(this, kind, ...rest);
+    const all = WebGL2RenderingContext;
+    const lists = [all.SCISSOR_BOX, all.VIEWPORT];
+    const counts = [all.ACTIVE_UNIFORMS, all.ACTIVE_ATTRIBUTES];
+    const known = {
+        canvas: this,
+        getContextAttributes: () => ({ alpha: true, antialias: true, depth: true }),
+        getShaderPrecisionFormat: () => ({ rangeMin: 127, rangeMax: 127, precision: 23 }),
+        getParameter: name => (name === all.VERSION ? 'WebGL 2.0' : lists.includes(name) ? [0, 0, 0, 0] : 16),
+        getProgramParameter: (_, name) => (counts.includes(name) ? 0 : true),
+        getShaderParameter: () => true,
+        getProgramInfoLog: () => '',
+        getShaderInfoLog: () => '',
+        getExtension: () => null,
+        isContextLost: () => false,
+        checkFramebufferStatus: () => all.FRAMEBUFFER_COMPLETE,
+    };
+    const other = name => all[name] ?? (name.startsWith?.('create') ? () => ({}) : () => undefined);
+    return new Proxy(known, { get: (_, name) => known[name] ?? other(name) });
+};
+"""
+"""Gives pages a graphics card that takes everything and draws nothing."""
+
+
+def new_tab(browser, scripts):
+    """A page in a context of its own, which runs scripts before what it opens."""
+    page = browser.new_context().new_page()
+    for script in scripts:
+        page.add_init_script(script)
+    return page
+
+
 @pytest.fixture(scope="session")
 def open_page(browser):
-    """`open_page(path, width=, height=, scheme=, still=, before=)`: the page of a file, ready, paused."""
+    """`open_page(path, width=, height=, scheme=, still=, before=, where=, drawn=)`: the page of a file.
+
+    Ready, and paused but for `still=False`. Tabs that run the same scripts `before` the page are used
+    again, each one more costs a process. Not `drawn` are pages of which nobody looks at the scene: to draw
+    without a graphics card takes most of the time.
+    """
+    free = {}
 
     @contextmanager
     def opened(
-        path: Path, width=1000, height=620, scheme="light", still=True, before=None, where="#t=0"
+        path: Path,
+        width=1000,
+        height=620,
+        scheme="light",
+        still=True,
+        before=None,
+        where="#t=0",
+        drawn=True,
     ) -> Iterator[Opened]:
-        context = browser.new_context(
-            viewport={"width": width, "height": height},
-            color_scheme=scheme,
-            reduced_motion="reduce" if still else "no-preference",
-        )
-        page = context.new_page()
-        if before is not None:
-            page.add_init_script(before)
+        scripts = tuple(script for script in (before, None if drawn else UNDRAWN) if script)
+        tabs = free.setdefault(scripts, [])
+        page = tabs.pop() if tabs else new_tab(browser, scripts)
+        page.set_viewport_size({"width": width, "height": height})
+        page.emulate_media(color_scheme=scheme, reduced_motion="reduce" if still else "no-preference")
         shown = Opened(page)
         page.goto(path.as_uri() + where)
         page.evaluate("() => window.irlx.ready.then(() => true)")
         shown.settle()
         yield shown
-        context.close()
+        page.evaluate("() => localStorage.clear()")
+        page.goto("about:blank")
+        shown.leave()
+        tabs.append(page)
         assert shown.complaints == []
 
     return opened

@@ -80,7 +80,7 @@ def test_events_and_joints(shown):
 
 
 def test_keys(made, open_page):
-    with open_page(made()) as page:
+    with open_page(made(), drawn=False) as page:
         press = page.page.keyboard.press
         steps = (
             ("ArrowRight", 1),
@@ -121,7 +121,7 @@ def test_keys(made, open_page):
 
 
 def test_playing_ends_and_loops(made, open_page):
-    with open_page(made()) as page:
+    with open_page(made(), drawn=False) as page:
         page.page.locator("#speed").select_option("10")
         page.page.get_by_role("button", name="Play").click()
         page.page.get_by_role("button", name="Play").wait_for()
@@ -172,7 +172,7 @@ def test_light_and_dark(made, open_page):
     ],
 )
 def test_nothing_overflows(made, open_page, width, height):
-    with open_page(made(), width=width, height=height) as page:
+    with open_page(made(), width=width, height=height, drawn=False) as page:
         for name in page.page.locator("[role=tab]").all_inner_texts():
             page.page.get_by_role("tab", name=name).click()
             size = page.run(
@@ -189,7 +189,7 @@ def test_nothing_overflows(made, open_page, width, height):
 
 def test_an_incomplete_run_says_so(made, open_page):
     with open_page(
-        made(complete=False, diagnostics=["made.irl:6: error IRL520: joint 'stretch' ends"])
+        made(complete=False, diagnostics=["made.irl:6: error IRL520: joint 'stretch' ends"]), drawn=False
     ) as page:
         banner = page.page.get_by_role("alert").inner_text()
         assert "not complete" in banner
@@ -227,7 +227,7 @@ def test_small_variant(made, open_page):
 @pytest.mark.req("REP-04")
 def test_where_motion_is_welcome_it_plays_by_itself_and_asks_for_itself_alone(made, open_page):
     path = made()
-    with open_page(path, where="") as page:
+    with open_page(path, where="", drawn=False) as page:
         page.page.wait_for_timeout(200)
         assert page.run("() => irlx.frame") == 0
     with open_page(path, still=False, where="") as page:
@@ -239,7 +239,7 @@ def test_where_motion_is_welcome_it_plays_by_itself_and_asks_for_itself_alone(ma
 
 def test_the_time_of_the_address_goes_with_it(made, open_page):
     path = made()
-    with open_page(path, where="#t=0.5") as page:
+    with open_page(path, where="#t=0.5", drawn=False) as page:
         assert page.run("() => irlx.frame") == 50
         assert page.page.url == path.as_uri() + "#t=0.5"
         page.page.keyboard.press("ArrowRight")

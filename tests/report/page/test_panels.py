@@ -49,6 +49,7 @@ def shown(made, open_page):
         ),
         width=1024,
         height=600,
+        drawn=False,
     ) as page:
         yield page
 

@@ -32,7 +32,8 @@ def shown(made, open_page):
             program={**data["program"], "text": PROGRAM},
             frames={**data["frames"], "line": [0, *lines[1:]]},
             events=[{**event, "kind": kind, "line": FIRST} for kind in KINDS],
-        )
+        ),
+        drawn=False,
     ) as page:
         yield page
 
