@@ -27,6 +27,7 @@ from irlx.pipeline import Execution
 from irlx.program import Program
 from irlx.report.file_recording import FileRecording
 from irlx.report.outcome import Outcome
+from irlx.report.outputs import overwrites, written
 from irlx.report.recorder import Recorder
 from irlx.report.recording import Recording
 from irlx.report.replay.names import is_page
@@ -35,6 +36,7 @@ from irlx.report.replay.writer import PageWriter
 from irlx.report.run import Run, RunError, RunInterrupted
 from irlx.report.samples import Samples
 from irlx.scene.sightings import Sightings
+from irlx.streams.error import StreamError
 from irlx.streams.sample import Sample
 from irlx.streams.sample_stream import SampleStream
 from irlx.streams.sampler import Sampler
@@ -110,8 +112,9 @@ def record(
     `outputs` is a path, or several, each in the format of its ending, one of them with the ending .html for a
     page that replays the run; all else as in `run`. The files appear
     at the end, whole. Of a program that ends in an error, and after Ctrl-C, what was executed appears beside
-    them as `NAME.partial.ENDING`, marked incomplete. Raises what `run` raises, and StreamError: IRL003 where
-    a file cannot be written, IRL004 for an unknown ending.
+    them as `NAME.partial.ENDING`, marked incomplete. The program itself cannot write these files. Raises what
+    `run` raises, and StreamError: IRL003 where a file cannot be written, IRL004 for an unknown ending, IRL005
+    where an input would be overwritten.
     """
     channels = files, input, output
     job = prepare(program, cell, tick_ms, max_slow, max_steps, inputs, *channels, pause_s)
@@ -121,6 +124,12 @@ def record(
     if len(pages) > 1:
         raise IrlxError(report("IRL006", option="outputs=", value=str(pages[1]), cause="one page a run"))
     page = pages[0] if pages else None
+    given = [Path(inputs)] if isinstance(inputs, str | os.PathLike) else []
+    for path in (*streams, *pages):
+        if any(overwrites(path, source) for source in (job.program.path, Path(job.cell.file), *given)):
+            raise StreamError(report("IRL005", option="outputs=", path=path))
+    protected = job.channels.protecting(written(streams), "a stream of this run")
+    job = replace(job, channels=protected.protecting(written(pages), "the page of this run"))
     return execute_to_files(Execution(job), streams, progress, explain_tick, page)
 
 

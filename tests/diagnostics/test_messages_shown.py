@@ -21,7 +21,9 @@ def shown_messages():
 
 def with_any_values(message):
     """What a message of the catalogue may look like."""
-    return "".join(".*" if part.startswith("{") else re.escape(part) for part in re.split(r"({.*?})", message))
+    return "".join(
+        ".*" if part.startswith("{") else re.escape(part) for part in re.split(r"({.*?})", message)
+    )
 
 
 @pytest.mark.req("LANG-70")

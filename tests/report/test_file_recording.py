@@ -120,6 +120,26 @@ def test_output_that_cannot_be_written_leaves_nothing(program: Path, tmp_path: P
     assert visible(tmp_path) == ["p.irl", "p.toml"]
 
 
+def test_an_input_is_no_output(program: Path, tmp_path: Path) -> None:
+    inputs, stream = tmp_path / "in.csv", tmp_path / "a.irdata"
+    inputs.write_text("time,input,value\n", encoding="utf-8")
+    with pytest.raises(irlx.StreamError, match=r"IRL005: outputs= .*in.csv would overwrite an input"):
+        irlx.record(program, [stream, inputs], inputs=inputs)
+    assert inputs.read_text(encoding="utf-8") == "time,input,value\n"
+    irlx.record(program, stream)
+    before = stream.read_bytes()
+    with pytest.raises(irlx.StreamError, match="IRL005"):
+        irlx.record(stream, stream)
+    assert stream.read_bytes() == before
+
+
+def test_a_program_does_not_write_its_own_stream(program: Path, tmp_path: Path) -> None:
+    text = "PROGRAM p;\nVAR FILE: f;\nBEGIN\n  OPEN(f, 'a.csv', 'WRITE');\nENDPROGRAM;\n"
+    program.write_text(text, encoding="utf-8")
+    with pytest.raises(irlx.IrlxError, match="a stream of this run"):
+        irlx.record(program, tmp_path / "a.csv")
+
+
 @pytest.mark.req("QA-08")
 @pytest.mark.parametrize("number", [0, 1, 3, 5])
 def test_an_interrupt_while_rows_are_written_leaves_whole_rows(

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
-__all__ = ["output_paths", "page_path", "written"]
+__all__ = ["output_paths", "page_path"]
 
 
 def output_paths(asked: Sequence[str | Path], inputs: tuple[Path, ...]) -> list[Path]:
@@ -16,6 +16,7 @@ def output_paths(asked: Sequence[str | Path], inputs: tuple[Path, ...]) -> list[
     IRL720 a package that the format needs is missing.
     """
     from irlx.diagnostics import report
+    from irlx.report.outputs import overwrites
     from irlx.report.replay.names import is_page
     from irlx.streams.error import StreamError
     from irlx.streams.formats import KNOWN_ENDINGS, format_of
@@ -27,7 +28,7 @@ def output_paths(asked: Sequence[str | Path], inputs: tuple[Path, ...]) -> list[
             found = report("IRL004", help=helps, path=path, ending=path.suffix, known=known_endings)
             raise StreamError(found)
         known = format_of(path, "IRL004")
-        if any(_holds(path, source) for source in inputs):
+        if any(overwrites(path, source) for source in inputs):
             raise StreamError(report("IRL005", option="-o", path=path))
         known.check(path)
     return paths
@@ -41,6 +42,7 @@ def page_path(asked: Sequence[str], inputs: tuple[Path, ...], outputs: Sequence[
     """
     from irlx.diagnostics import report
     from irlx.report.file_recording import partial_name
+    from irlx.report.outputs import overwrites
     from irlx.report.replay.names import is_page
     from irlx.streams.error import StreamError
 
@@ -51,7 +53,7 @@ def page_path(asked: Sequence[str], inputs: tuple[Path, ...], outputs: Sequence[
     path = Path(asked[0])
     if not is_page(path):
         raise StreamError(report("IRL013", path=path, example=f"{path.stem or 'page'}.html"))
-    if any(_holds(path, source) for source in inputs):
+    if any(overwrites(path, source) for source in inputs):
         raise StreamError(report("IRL005", option="--html", path=path))
     # A stream has another ending, and yet two names may lead to one file.
     taken = {os.path.realpath(name) for output in outputs for name in (output, partial_name(output))}
@@ -73,18 +75,3 @@ def _check_page(path: Path) -> None:
 
         helps = "name another file with --html"
         raise StreamError([replace(found, help=helps) for found in error.diagnostics]) from error
-
-
-def _holds(path: Path, source: Path) -> bool:
-    """Whether an output is an input, or a folder that an input stands in."""
-    if not (path.exists() and source.exists()):
-        return False
-    return path.samefile(source) or source.resolve().is_relative_to(path.resolve())
-
-
-def written(outputs: Iterable[Path]) -> tuple[Path, ...]:
-    """Every name under which what is asked for may appear, also of a run that does not come to its end."""
-    from irlx.report.file_recording import partial_name
-
-    names = tuple(outputs)
-    return (*names, *map(partial_name, names))

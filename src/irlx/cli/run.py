@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, cast
 
 from irlx.cli.execution import add_execution_options, add_plugin_option, import_plugins, standard_input
-from irlx.cli.outputs import output_paths, page_path, written
+from irlx.cli.outputs import output_paths, page_path
 from irlx.cli.program_text import ProgramText, TypedInput
 from irlx.cli.progress import shown_progress
 
@@ -174,6 +174,7 @@ def _prepared(options: argparse.Namespace, text: ProgramText) -> tuple[Job, list
         if Path(options.program).suffix.lower() == ".irl":
             given = load(options.program, options.cell)
         from irlx.job import prepare
+        from irlx.report.outputs import written
 
         asked = options.tick, options.max_slow, options.max_steps, options.inputs
         output = None if options.json else cast("IO[str]", text)
