@@ -102,20 +102,21 @@ def reproduce(
 
 def _check_known(path: Path, header: StreamHeader, given: Mapping[str, bool]) -> None:
     """Raises IrlxError, IRL731, for what the file does not say and is not `given` again, by its name."""
-    missing = [_WORDS[name] for name in header.making.given if not given.get(name)]
+    missing = [GIVEN[name] for name in header.making.given if not given.get(name)]
     if header.making == Making():
         missing.append("all that files of version 2 say")
     if missing:
         raise IrlxError(report("IRL731", Place(str(path)), missing=", ".join(missing)))
 
 
-_WORDS = {
+GIVEN = {
     "inputs": "inputs that Python gave",
     "input": "the text for STANDARD_IN that Python gave",
     "files": "the folder of --files",
     "on_pause": "a function that answered each PAUSE",
     "cell": "a cell that is no file as it stands",
 }
+"""What a run may be given that no file can hold: its name in the file, and words for it."""
 
 
 def _source_name(path: Path, header: StreamHeader) -> str:
