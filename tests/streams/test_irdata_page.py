@@ -1,4 +1,4 @@
-"""docs/reference/irdata.md, the definition of the format, has every record and every part that irlx writes."""
+"""docs/reference/irdata.md, the definition of the format, has every record and part that irlx writes."""
 
 import re
 from dataclasses import MISSING, fields
