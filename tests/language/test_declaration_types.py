@@ -41,6 +41,20 @@ ROWS = {
             "ARRAY [1..5000, 1..5000] OF REAL",
         )
     ],
+    "VAR ARRAY [1..2000000] OF POSE: a;": [
+        (
+            "IRL507",
+            "an array of 14000000 elements is too large; at most 10000000 are kept",
+            "ARRAY [1..2000000] OF POSE",
+        )
+    ],
+    "VAR ARRAY [1..2] OF ARRAY [1..20000000] OF REAL: a;": [
+        (
+            "IRL507",
+            "an array of 20000000 elements is too large; at most 10000000 are kept",
+            "ARRAY [1..20000000] OF REAL",
+        )
+    ],
     # records
     "TYPE RECORD INT: n; REAL: n; ENDRECORD = r;": [("IRL214", "the record has two fields 'n'", "n")],
     "TYPE RECORD REAL: max; ENDRECORD = inner; RECORD inner: a1; REAL: a1.max; ENDRECORD = both;": [

@@ -32,7 +32,7 @@ def add_plugin_option(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="M",
-        help="import a module or a .py file that registers criteria of your own; may be given several times",
+        help="import a module or a .py file that registers criteria or constraints; may be repeated",
     )
 
 

@@ -15,10 +15,11 @@ from irlx.interpreter.scope import Local, Parameter, Routine, Scope, Variable
 from irlx.interpreter.statements import Statements
 from irlx.interpreter.type_forms import TypeForms
 from irlx.interpreter.types import JOINT_RECORDS
-from irlx.interpreter.values import leaves, unset_value
+from irlx.interpreter.values import unset_value
 from irlx.language import tree
 from irlx.language.builtins import SYSTEM_VARIABLES
 from irlx.language.symbols import declared_symbols
+from irlx.language.types import leaves
 
 Declaration: TypeAlias = "tree.ProcedureDeclaration | tree.FunctionDeclaration"
 

@@ -8,9 +8,9 @@ from irlx.interpreter.errors import fail
 from irlx.interpreter.expressions import Expressions
 from irlx.interpreter.system_names import LATER_TYPES
 from irlx.interpreter.types import JOINT_RECORDS, REAL, Array, Record, Type, ambiguous_field, joint_type
-from irlx.interpreter.values import leaves
 from irlx.language import tree
 from irlx.language.ranges import MOST_ELEMENTS
+from irlx.language.types import leaves
 
 """Values that an array may hold, those of its elements counted one by one."""
 

@@ -70,14 +70,6 @@ def has_arrays(type: Type) -> bool:
     return isinstance(type, Array)
 
 
-@cache
-def leaves(type: Type) -> int:
-    """Number of simple values that a value of a type holds."""
-    if isinstance(type, Record):
-        return sum(leaves(part) for _, part in type.fields)
-    return type.size * max(leaves(type.element), 1) if isinstance(type, Array) else 1
-
-
 def share(value: Value) -> None:
     """Mark the arrays of a value: whoever has it may rely on it from now on."""
     if isinstance(value, ArrayValue):

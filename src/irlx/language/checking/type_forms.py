@@ -26,6 +26,7 @@ from irlx.language.types import (
     joint_bounds,
     joint_type,
     known_types,
+    leaves,
 )
 from irlx.language.words import count
 
@@ -101,8 +102,10 @@ class TypeForms(Expressions):
 
     def _array(self, form: tree.ArrayType) -> Array:
         array = Array(tuple([self._bounds(d) for d in form.dimensions]), self.type_of(form.element))
-        if array.size > MOST_ELEMENTS:
-            self.add("IRL507", form, size=array.size, most=MOST_ELEMENTS)
+        size = max(array.size, leaves(array))
+        # Of arrays in each other the innermost that is too large is told.
+        if size > MOST_ELEMENTS >= leaves(array.element):
+            self.add("IRL507", form, size=size, most=MOST_ELEMENTS)
         return array
 
     def _bounds(self, dimension: tree.Range) -> Bounds:

@@ -19,6 +19,7 @@ from irlx.language.types.model import (
     fits,
     holds_files,
     is_number,
+    leaves,
     same_type,
 )
 from irlx.language.types.predefined import (
@@ -71,6 +72,7 @@ __all__ = [
     "joint_type",
     "joint_weights",
     "known_types",
+    "leaves",
     "longest_field",
     "predefined_types",
     "same_type",

@@ -112,6 +112,14 @@ def _same_ranges(found: Array, expected: Array) -> bool:
     return all(mine == other or ANY_BOUNDS in (mine, other) for mine, other in pairs)
 
 
+@cache
+def leaves(type: Type) -> int:
+    """Number of simple values that a value of a type holds; 0 where only a run tells."""
+    if isinstance(type, Record):
+        return sum(leaves(part) for _, part in type.fields)
+    return type.size * max(leaves(type.element), 1) if isinstance(type, Array) else 1
+
+
 def fits(found: Type, expected: Type) -> bool:
     """Whether a value of type `found` may stand where `expected` is: INT becomes REAL and CHAR STRING."""
     becomes = (found is INT and expected is REAL) or (found is CHAR and expected is STRING)
