@@ -150,6 +150,17 @@ def test_stream_is_the_run_bit_for_bit(folder, short_run):
         np.testing.assert_array_equal(streamed, getattr(short_run, name))
 
 
+def test_samples_may_be_changed(folder, short_run):
+    """Whoever turns a sample into degrees in place does not move the robot, nor what follows."""
+    before = {name: [] for name in ("q", "qd", "qdd", "tool")}
+    for sample in irlx.stream(folder / "p.irl"):
+        for name, rows in before.items():
+            rows.append(getattr(sample, name).copy())
+            getattr(sample, name)[:] = 57.3
+    for name, rows in before.items():
+        np.testing.assert_array_equal(np.array(rows), getattr(short_run, name))
+
+
 @pytest.mark.parametrize("ticks", [0, 1, 5, 20])
 def test_stream_stops_anywhere(folder, short_run, ticks):
     stream = irlx.stream(folder / "p.irl", cell=folder / "p.toml")

@@ -25,11 +25,13 @@ class Samples:
             self._waiting.append(segment)
 
     def new(self) -> Iterator[Sample]:
-        """Samples of the rows that have come since the last call."""
+        """Samples of the rows that have come since the last call; their arrays are their own."""
         while self._waiting:
             segment = self._waiting.pop(0)
             ticks = segment.first_tick + np.arange(len(segment.q), dtype=np.int64)
             t, qd, qdd = self._rates.of(ticks, segment.q)
-            columns = ticks.tolist(), t.tolist(), segment.q, qd, qdd, segment.tool, segment.block.tolist()
+            # The robot goes on from the very rows of the segment.
+            q, block = segment.q.copy(), segment.block.tolist()
+            columns = ticks.tolist(), t.tolist(), q, qd, qdd, segment.tool, block
             for row in zip(*columns, strict=True):
                 yield Sample(*row)

@@ -23,7 +23,7 @@ class Rates:
             return StatedRates(t, q, q)
         qd = _differences(q, self._q, self._dt)
         qdd = _differences(qd, self._qd, self._dt)
-        self._q, self._qd = q[-1:].copy(), qd[-1:]
+        self._q, self._qd = q[-1:].copy(), qd[-1:].copy()
         return StatedRates(t, qd, qdd)
 
 

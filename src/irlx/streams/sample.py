@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Sample:
-    """State at one tick.
+    """State at one tick; its arrays are its own.
 
     `t` in s; `q`, `qd`, `qdd` (n,) rad | m and per s, s2; `tool` (7,) x y z m and quaternion x y z w;
     `block` is the id of the move in execution; `correction` (6,) is the one that the tool has, None where no
