@@ -7,8 +7,12 @@ import pinocchio as pin
 import pytest
 
 from irlx.cell.packaged import packaged_urdf
+from irlx.robot.axis_constraint import AxisConstraint
+from irlx.robot.axis_direction import AxisDirection
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.link_pairs import pairs_that_could_meet
+from irlx.robot.link_path import LinkPath
+from irlx.robot.path_constraint import PathConstraint
 from irlx.robot.urdf import read_urdf
 from irlx.robot.urdf_values import RobotModelError
 from irlx.scene.distances import Distances
@@ -179,3 +183,19 @@ def test_followers_are_read_and_narrow_the_limits_of_their_leader() -> None:
 def test_followers_without_a_leader(mimics, locked, words) -> None:
     with pytest.raises(RobotModelError, match=words):
         read_urdf(text_of("rail6", **mimics), "tool", locked)
+
+
+def test_constraints_of_links(pair) -> None:
+    plain, robot, matrix, offsets = pair
+    one, other = Kinematics(plain), Kinematics(robot)
+    link = plain.moving[-2].child
+    path = LinkPath("path", link, ((0.0, 0.0), (1.0, 0.2), (2.0, 1.0)), heading=True)
+    axis = AxisDirection("axis", link, (0.0, 0.6, 0.8), (0.0, 0.0, 1.0))
+    for make, relation in ((PathConstraint, path), (AxisConstraint, axis)):
+        mine, theirs = make(relation, other), make(relation, one)
+        for q in postures(robot, 9):
+            full = matrix @ q + offsets
+            (left, slopes), (due, by_joints) = mine.rows(q), theirs.rows(full)
+            np.testing.assert_allclose(left, due, atol=1e-12)
+            np.testing.assert_allclose(mine.residual(q), due, atol=1e-12)
+            np.testing.assert_allclose(slopes, by_joints @ matrix, atol=1e-11)

@@ -42,7 +42,7 @@ class LinkMotion:
     """States of one link of a robot."""
 
     def __init__(self, kinematics: Kinematics, link: str) -> None:
-        self._model = kinematics.model
+        self._kinematics, self._model = kinematics, kinematics.model
         self._data: Any = self._model.createData()
         self._joint, self._in_joint = kinematics.body_of(link)
         self._at_joint = bool(self._in_joint.isIdentity(0.0))
@@ -50,15 +50,16 @@ class LinkMotion:
 
     def pose(self, q: Array) -> pin.SE3:
         """The link's pose in the root frame at posture q (n,)."""
-        pin.forwardKinematics(self._model, self._data, q)
+        pin.forwardKinematics(self._model, self._data, self._kinematics.expanded(q))
         return self._data.oMi[self._joint] * self._in_joint
 
     def at(self, q: Array) -> LinkState:
         """The link's state at posture q (n,)."""
         if self._joint == 0:
             return LinkState(self._in_joint, (0.0, 0.0, 0.0), self._still)
-        pin.computeJointJacobians(self._model, self._data, q)
-        jacobian = pin.getJointJacobian(self._model, self._data, self._joint, _ALIGNED)
+        pin.computeJointJacobians(self._model, self._data, self._kinematics.expanded(q))
+        by_joints = pin.getJointJacobian(self._model, self._data, self._joint, _ALIGNED)
+        jacobian = self._kinematics.by_axes(by_joints)
         pose = self._data.oMi[self._joint]
         if self._at_joint:
             return LinkState(pin.SE3(pose), (0.0, 0.0, 0.0), jacobian)
