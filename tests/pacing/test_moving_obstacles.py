@@ -92,3 +92,17 @@ def test_the_elbow_makes_room_for_a_ball(tmp_path, tick):
     assert smallest_distance(tmp_path / "ball.toml", avoiding) == pytest.approx(near.smallest.distance)
     report = irlx.verify(avoiding, program=tmp_path / "ball.irl", cell=tmp_path / "ball.toml")
     assert report.passed, str(report)
+
+
+def test_a_wall_that_comes_too_near_to_a_robot_that_waits_is_told(tmp_path):
+    """A half-space is a wall without an end, and moves like any other obstacle."""
+    cell = CELL.format(tick=50).replace('"sphere"\nradius = 60', '"halfspace"')
+    cell = cell[: cell.index("trajectory")] + (
+        "trajectory = [{ time = 0, xyz = [1500, 0, 0], rpy = [0, -90, 0] },"
+        " { time = 4, xyz = [400, 0, 0], rpy = [0, -90, 0] }]\n"
+    )
+    (tmp_path / "ball.toml").write_text(cell, encoding="utf-8")
+    text = PROGRAM.format(on="OBSTACLE ball;\n  WAIT 4 SEC;", off="OBSTACLEEND ball;")
+    (tmp_path / "ball.irl").write_text(text, encoding="utf-8")
+    with pytest.raises(irlx.RunError, match="IRL561: while it waits"):
+        irlx.run(tmp_path / "ball.irl")

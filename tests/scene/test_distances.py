@@ -1,5 +1,7 @@
 """Distances between a robot and what it keeps clear of."""
 
+from dataclasses import replace
+
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -155,6 +157,43 @@ def test_solids_deep_inside_each_other_have_distances(shapes):
             assert np.all(np.abs(values) < 2.0)
         assert np.linalg.norm(near.away[0]) == pytest.approx(1.0, abs=1e-6)
         assert np.all(np.isfinite(found.jacobians(np.zeros(3), near)))
+
+
+def test_links_may_have_the_very_same_solid():
+    """One object that stands for the shape of several links is at several places."""
+    arm, q = robot(), np.full(7, 0.3)
+    ball, links = Solid(Sphere(0.05)), list(arm.description.solids)
+    shared = replace(arm.description, solids=dict.fromkeys(links, (ball,)))
+    apart = replace(shared, solids={link: (Solid(Sphere(0.05)),) for link in links})
+    found = []
+    for description in (shared, apart):
+        made = Kinematics(description)
+        pairs = watched_pairs(made, [obstacle(Sphere(0.1), (1.0, 0.0, 0.5))], None)
+        found.append(Distances(made, pairs).of(q, np.arange(len(pairs))).distance)
+    np.testing.assert_array_equal(*found)
+
+
+@pytest.mark.req("TRF-13")
+@pytest.mark.parametrize("turned", [0.0, 0.6])
+def test_a_half_space_that_comes_is_seen_coming(turned):
+    """Its points have no farthest one; a robot that stands still must not take it for one that rests."""
+    arm, q = robot(), np.zeros(7)
+    end = (0.0, np.sin(turned / 2), 0.0, np.cos(turned / 2))
+    way = (Waypoint(0.0, Placement((0.0, 0.0, -3.0))), Waypoint(2.0, Placement((0.0, 0.0, 0.3), end)))
+    tide = Obstacle("tide", (Solid(Halfspace()),), way[0].placement, 0.02, 0.1, way)
+    pairs = watched_pairs(arm, [tide], None)
+    found = Distances(arm, pairs)
+    assert found.moves
+    for time in (0.0, 0.0, 0.5, 1.9, 1.9, 2.0, 0.1):
+        found.at_time(time)
+        fresh = Distances(arm, pairs)
+        fresh.at_time(time)
+        near, due = found.near(q), fresh.near(q)
+        np.testing.assert_array_equal(near.pairs, due.pairs)
+        np.testing.assert_array_equal(near.distance, due.distance)
+        assert not (found.far(q) and len(due.pairs))
+    found.at_time(2.0)
+    assert len(found.near(q).pairs)
 
 
 @pytest.mark.parametrize("seed", first(1, range(3)))

@@ -200,7 +200,7 @@ class Distances:
         if self._longest is None:
             return self._fastest == 0.0 and self.clear_rows(q[None], self.influence) == 1
         moved = self._longest.dot(np.abs(q - self._last))
-        if self._fastest > 0.0:
+        if self._fastest > 0.0 and self._time != self._looked_at:
             moved += self._fastest * abs(self._time - self._looked_at)
         if not moved < self._slack:
             return False
@@ -243,7 +243,7 @@ class Distances:
         reach = self.influence if within is None else within
         moved = self._levers.moved(self._last, q)
         least = self._least - moved
-        if self._fastest > 0.0:
+        if self._fastest > 0.0 and self._time != self._looked_at:
             least = least - self._rates * abs(self._time - self._looked_at)
         asked = (least < reach).nonzero()[0]
         if not len(asked) and not everything:
@@ -381,7 +381,7 @@ class Distances:
     # ---- building
 
     def _add_of_link(self, link: str, solid: Solid) -> int:
-        key = "link", True, id(solid)
+        key = link, True, id(solid)
         if key in self._numbers:
             return self._numbers[key]
         joint, frame = self.kinematics.body_of(link)

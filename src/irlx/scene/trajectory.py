@@ -53,12 +53,13 @@ class Trajectory:
         return pin.SE3(before.rotation @ pin.exp3(share * turn), place)
 
     def fastest(self, radius: float) -> float:
-        """Largest speed (m/s) of its points within `radius` (m) of its frame's origin."""
+        """Largest speed (m/s) of its points within `radius` (m, or infinite) of its frame's origin."""
         found = [0.0]
         for (t0, before), (t1, behind) in pairwise(zip(self._times, self._poses, strict=True)):
             way = float(np.linalg.norm(behind.translation - before.translation))
             turn = float(np.linalg.norm(pin.log3(before.rotation.T @ behind.rotation)))
-            found.append((way + turn * radius) / float(t1 - t0))
+            # Of a half-space that only goes straight no point is any faster than the others.
+            found.append((way + (turn * radius if turn > 0.0 else 0.0)) / float(t1 - t0))
         return max(found)
 
 
