@@ -37,6 +37,7 @@ acc = 1000
 TURN = "WITH TOLERANCE (0, 0, 0, 0, 0, 360)"
 SIDES = ((0, 150, 0), (0, 0, -150), (0, -150, 0), (0, 0, 150))
 BAND = 1e-9
+HERE = "R_ROBTARGET_ACT.PSE"
 
 
 def square(clause: str) -> str:
@@ -233,6 +234,41 @@ def test_the_verifier_finds_a_band_passed(run, tmp_path, bands: tuple[int, ...],
     assert verify_stream(stream, run.robot()).passed
     report = verify_stream(narrower(stream, part), run.robot())
     assert "tolerance bands" in {check.name for check in report.failed}
+
+
+def still(q: np.ndarray) -> np.ndarray:
+    """Rows of a robot that stays where it is."""
+    return np.repeat(q[:1], len(q), axis=0)
+
+
+def to_and_fro(q: np.ndarray) -> np.ndarray:
+    """Rows of a robot that turns back on its way, and again."""
+    rows = len(q)
+    corners = [0, rows // 3, 2 * rows // 3, rows - 1]
+    way = np.interp(np.arange(rows), corners, [0, 2 * rows // 3, rows // 3, rows - 1])
+    return q[np.rint(way).astype(int)]
+
+
+@pytest.mark.req("STR-06")
+@pytest.mark.parametrize(
+    ("body", "change"),
+    [
+        (f"MOVE CIRCLE {HERE} + POSITION(0, 50, 50), {HERE} + POSITION(0, 100, 0) ANGLE := 360", still),
+        ("MOVE_INC LIN (0, 150, 0)", to_and_fro),
+    ],
+)
+@pytest.mark.parametrize("bands", [(0, 0, 2, 0, 0, 0), (3, 0, 2, 1, 1, 1)])
+def test_the_verifier_finds_a_way_not_run(run, tmp_path, body, change, bands) -> None:
+    """A tool beside its path tells of the place on it up to what the bands leave open."""
+    found = run(f"  {body} WITH TOLERANCE {bands};\n")
+    found.save(tmp_path / "p.npz")
+    stream = read_stream(tmp_path / "p.npz")
+    q = change(stream.q)
+    position, rotation = forward(run.robot(), q)
+    tool = np.hstack([position, Rotation.from_matrix(rotation).as_quat()])
+    pretended = replace(stream, q=q, tool=tool)
+    report = verify_stream(pretended, run.robot())
+    assert "path progress" in {check.name for check in report.failed}, str(report)
 
 
 @pytest.mark.parametrize("name", ["free_turn", "free_turn_fixed"])

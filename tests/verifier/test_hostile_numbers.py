@@ -75,6 +75,19 @@ def test_any_number_of_a_block(value, stream, kit):
 
 
 @pytest.mark.req("QA-06")
+def test_a_rate_that_is_no_number(stream, kit):
+    """It would pass for no limit at all: nothing is above it."""
+    for number, record in enumerate(stream.records):
+        for path in leaves(plain := block_to_plain(record.block)):
+            if path[0] == "law":
+                block = block_from_plain(planted(plain, path, float("nan")))
+                records = list(stream.records)
+                records[number] = replace(record, block=block)
+                report = verify_stream(replace(stream, records=tuple(records)), kit.ROBOT)
+                assert f"its {path[1]} is nan" in report["blocks"].detail
+
+
+@pytest.mark.req("QA-06")
 @pytest.mark.parametrize("value", first(3, [1e308, 5e-324, 1e155, -1e200]), ids=str)
 @pytest.mark.parametrize("what", ["q", "tool"])
 def test_any_number_of_a_row(value, what, stream, kit):

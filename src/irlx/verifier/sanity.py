@@ -93,7 +93,15 @@ def _wrong_blend(block: MoveBlock) -> str:
     return ""
 
 
+_RATES = ("speed", "acc", "speed_ori", "acc_ori", "speed_ptp", "acc_ptp", "duration")
+
+
 def _wrong_law(law: MotionLaw) -> str:
+    values = ((name, getattr(law, name)) for name in _RATES)
+    # Written so that what is no number is found: it would pass for no limit at all.
+    odd = next((pair for pair in values if pair[1] is not None and not pair[1] >= 0.0), None)
+    if odd is not None:
+        return f"its {odd[0]} is {odd[1]}"
     if not 0.0 < law.override <= 1.0:
         return f"its override is {law.override}, not above 0 and up to 1"
     if law.jerk is not None and not law.jerk > 0.0:

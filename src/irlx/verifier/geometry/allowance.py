@@ -62,6 +62,11 @@ class Allowance:
         return any(band > 0.0 for band in self.bands[:3])
 
     @property
+    def farthest(self) -> float:
+        """Farthest that a tool may stand from where it is asked for, m."""
+        return float(np.linalg.norm(self.bands[:3]))
+
+    @property
     def turns(self) -> bool:
         """Whether a turn is allowed."""
         return any(band > 0.0 for band in self.bands[3:])

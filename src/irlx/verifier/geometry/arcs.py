@@ -19,6 +19,9 @@ WHOLE_TURN = 2.0 * np.pi
 NEARLY = 1e-6
 """Angles, rad, by which rows may lie before the start of an arc or go back between ticks."""
 
+NEAR_THE_CIRCLE = 0.5
+"""Part of its radius up to which a tool may stand beside a circle for its angle to tell anything."""
+
 SHORT_WAY = 1e-6
 """Ways shorter than this, m, come from a tiny ANGLE."""
 
@@ -153,6 +156,18 @@ class ArcWay:
         angles = np.clip(self._rounds(self._shape.angles(positions)), 0.0, self._shape.travel)
         self._raw, self._angle = before
         return np.asarray(angles / self._shape.flatness)
+
+    def travelled(self, positions: Floats, aside: float) -> tuple[Floats, float]:
+        """Way (R,) m to the points nearest to the next positions (R, 3), which follow each other, and how far
+        that is off the way at most where tools stand up to `aside` m beside it: of a point so far off the
+        circle an angle of asin(aside / radius). Endless where that may be any point, or any round."""
+        if self._chord is not None:
+            return self._chord.travelled(positions, aside)
+        flatness = self._shape.flatness
+        angles = np.clip(self._rounds(self._shape.angles(positions)), 0.0, self._shape.travel)
+        told = aside * flatness <= NEAR_THE_CIRCLE and self._most_step < 0.5 * np.pi
+        off = float(np.arcsin(aside * flatness) / flatness) if told else np.inf
+        return np.asarray(angles / flatness), off
 
     def at(self, way: Floats) -> tuple[Floats, Floats]:
         """Positions (R, 3) and orientations (R, 3, 3) after ways (R,) m."""

@@ -101,6 +101,11 @@ class LineWay:
             return np.full(len(positions), 0.5 * self.length)
         return np.clip((positions - self._start[0]) @ self._step / self.distance, 0.0, self.distance)
 
+    def travelled(self, positions: Floats, aside: float) -> tuple[Floats, float]:
+        """Way (R,) m to the points nearest to positions (R, 3), and how far that is off the way at most where
+        tools stand up to `aside` m beside it. Endless where positions do not tell."""
+        return self.nearest(positions), np.inf if self.by_angle else aside
+
     def at(self, way: Floats) -> Pose:
         """Positions (R, 3) and orientations (R, 3, 3) after ways (R,), m or rad."""
         turn = self._turns[0]

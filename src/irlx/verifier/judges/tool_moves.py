@@ -193,7 +193,7 @@ class ToolMoveChecks:
         """Rows of a move whose tool may stand beside its path: what of it is beyond the bands.
 
         The place on the path is sought off which the tool stands within them. Of several nobody can tell
-        which was asked for, so that speeds along the path are not judged.
+        which was asked for, so that speeds along the path are not judged, and its progress up to that.
         """
         assert course.way is not None
         here = stretch.after
@@ -204,6 +204,23 @@ class ToolMoveChecks:
         turned = allowance.turned_off(rows.attitudes[here], asked[1])
         self._path[1].add(stretch.rows, turned, PATH_ORIENTATION)
         self._add_bands(stretch.rows, allowance, (positions, rotations), asked)
+        self._add_shifted_progress(stretch, course, positions, allowance.farthest + PATH_POSITION)
+
+    def _add_shifted_progress(
+        self, stretch: Stretch, course: Course, positions: Floats, aside: float
+    ) -> None:
+        """Never backwards and to the end, but for what a tool up to `aside` m beside its path may pretend."""
+        assert course.way is not None
+        along, off = course.way.travelled(positions, aside)
+        if not np.isfinite(off):
+            return
+        furthest = np.maximum.accumulate(np.concatenate([[self._furthest], along]))
+        back = furthest[:-1] - along
+        self._furthest = float(furthest[-1])
+        self._progress.add(stretch.rows, back, 2.0 * off, rank=back / (2.0 * off), unit="m")
+        if stretch.ends and course.move.finished:
+            missing = np.array([course.way.length - along[-1]])
+            self._progress.add(stretch.rows[-1:], missing, off, rank=missing / off, unit="m")
 
     def _add_path(self, rows: Rows, stretch: Stretch, course: Course, allowance: Allowance) -> Floats | None:
         """Judge rows against their path; the path's own orientation there where not all turns count."""
