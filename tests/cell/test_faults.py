@@ -104,6 +104,17 @@ def test_values(faults, text, key, expected, found):
 
 
 @pytest.mark.req("CELL-01")
+@pytest.mark.parametrize(
+    ("table", "value"), [("frames", "{ xyz = [1, 2, 3] }"), ("signals.inputs", "[[0, 1]]")]
+)
+def test_names_that_differ_in_case_alone(faults, table, value):
+    key = f"{table}.part"
+    text = f"[robot]\nmodel = 'koch11'\n[{table}]\nPart = {value}\npart = {value}\n"
+    expected = f"{key}: expected a name that differs from 'Part' in more than case, found 'part'"
+    assert faults(text) == [("IRL603", key, expected)]
+
+
+@pytest.mark.req("CELL-01")
 @pytest.mark.parametrize("section", ["robot", "motion", "frames", "frames.f", "robot.locked", "robot.limits"])
 def test_sections_are_tables(faults, section):
     ((code, key, message),) = faults(f"{section} = 3\n")

@@ -37,6 +37,13 @@ def test_position_beyond_its_limit_by_one_bit_is_found(kit, row: int, side: floa
     assert (found.value, found.bound) == (rows[row, 4], side)
 
 
+@pytest.mark.parametrize("row", [0, 28, 29])
+def test_a_value_that_is_no_number_breaks_a_bound(kit, row: int) -> None:
+    rows = np.zeros((30, 7))
+    rows[row, 4] = np.nan
+    assert broken_bound(START, rows, kit.limits(np.inf), DT) is not None
+
+
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_speed_is_counted_from_rest_at_the_start(kit, side: float) -> None:
     found = broken_bound(START, side * ramp(speed=0.2), kit.limits(5.0, 0.1), DT)

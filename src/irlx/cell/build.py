@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import cos, inf, radians, sin
 from typing import Any, Literal
 
@@ -40,7 +41,8 @@ def build_cell(content: CellFile, robot_section: RobotSection, robot: RobotDescr
     )
     _status_joints(robot_section, robot, file, errors)
     q = np.array([to_si(robot, joint, value) for joint, value in enumerate(start[:count])])
-    errors += _frame_errors(content, file)
+    errors += _case_errors("frames", content.frames, file)
+    errors += _case_errors("signals.inputs", content.signals.inputs, file)
     errors += bound_frame_errors(content, robot, file)
     scene, scene_warnings = read_scene(content, robot_section, robot, file, errors)
     constraints = read_constraints(content.constraint, robot, q if not errors else None, file, errors)
@@ -181,14 +183,14 @@ def _start_errors(q: Array, limits: JointLimits, robot: RobotDescription, file: 
     return errors
 
 
-def _frame_errors(content: CellFile, file: str) -> list[Diagnostic]:
-    """Frames that differ in case alone: programs do not tell them apart."""
+def _case_errors(table: str, names: Iterable[str], file: str) -> list[Diagnostic]:
+    """Names of a table that differ in case alone: programs do not tell them apart."""
     errors: list[Diagnostic] = []
     first: dict[str, str] = {}
-    for name in content.frames:
+    for name in names:
         other = first.setdefault(name.casefold(), name)
         if other != name:
-            key = f"frames.{name}"
+            key = f"{table}.{name}"
             expected = f"a name that differs from '{other}' in more than case"
             errors.append(
                 report("IRL603", Place(file, key=key), key=key, expected=expected, found=repr(name))

@@ -11,7 +11,7 @@ from irlx.cell.frame_names import cell_table
 def obstacle_names(path: Path) -> tuple[str, ...]:
     """Names under `[[obstacle]]`, of groups as well, as the cell writes them, in NFC as in programs.
 
-    None where the file is at fault: what is wrong with a cell is told when it is loaded.
+    None of them where the file is at fault: what is wrong with a cell is told when it is loaded.
     """
     tables = cell_table(path).get("obstacle")
     if not isinstance(tables, list):

@@ -13,14 +13,11 @@ from irlx.diagnostics import Place, report
 from irlx.motion.errors import MotionError
 from irlx.motion.fastest_law import fastest_s_curves, fastest_trapezoids
 from irlx.motion.sections import Sections
-from irlx.motion.time_law import TimeLaw
+from irlx.motion.time_law import LEAST_RATE, TimeLaw
 from irlx.motion.trapezoid import Trapezoid
 
 _SAME_TIME = 1e-9
 _MOST_SWEEPS = 30
-
-_LEAST_RATE = 1e-100
-"""A speed or acceleration below is standstill: the products of a time law with it would round to 0."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +46,7 @@ def chain_law(stages: Sequence[Stage], length: float) -> TimeLaw:
     MotionError, IRL421, where even its programmed speed takes longer.
     """
     bounds = [stage.bounds for stage in stages]
-    if min(float(min(np.min(bound.speed), np.min(bound.acc))) for bound in bounds) < _LEAST_RATE:
+    if min(float(min(np.min(bound.speed), np.min(bound.acc))) for bound in bounds) < LEAST_RATE:
         return Trapezoid(length, 0.0, inf, 0.0)
     law = _fastest(stages, bounds, length)
     timed = [k for k, stage in enumerate(stages) if stage.time is not None]

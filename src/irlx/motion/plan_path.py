@@ -19,16 +19,13 @@ from irlx.motion.pose_path import PosePath
 from irlx.motion.sections import Sections, rise_time
 from irlx.motion.swept_path import SweptPath
 from irlx.motion.target_pose import target_pose
-from irlx.motion.time_law import TimeLaw
+from irlx.motion.time_law import LEAST_RATE, TimeLaw
 from irlx.motion.trapezoid import Trapezoid
 from irlx.motion.whole_ticks import ticks_of_move
 
 Array = NDArray[np.float64]
 
 _TIME_SLACK = 1e-9
-
-_LEAST_RATE = 1e-100
-"""A speed or acceleration below is standstill: the products of a time law with it would round to 0."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +87,7 @@ def path_law(path: PosePath, law: MotionLaw, place: Place) -> TimeLaw:
     """
     (way_speed, way_acc), (turn_speed, turn_acc) = _along(path, law), _turning(path, law)
     speed, acc = min(way_speed, turn_speed), min(way_acc, turn_acc)
-    if min(speed, acc) < _LEAST_RATE:
+    if min(speed, acc) < LEAST_RATE:
         return Trapezoid(path.length, 0.0, inf, 0.0)
     fastest: TimeLaw = Trapezoid.fastest(path.length, speed, acc)
     if law.profile is Profile.S_CURVE:

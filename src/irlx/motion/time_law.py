@@ -9,6 +9,9 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+LEAST_RATE = 1e-100
+"""A speed or acceleration below is standstill: the products of a time law with it would round to 0."""
+
 
 class TimeLaw(Protocol):
     """Motion from rest to rest over `length`, in the units of the path (m, rad, or 1) and seconds.

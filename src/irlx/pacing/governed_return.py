@@ -53,7 +53,8 @@ def share_of_way(way: ReturnWay, law: TimeLaw, limits: JointLimits) -> float:
     acc = np.where(np.isfinite(acc), acc, speed / RAMP_TIME)
     rate, growth = law.speed / law.length, law.acc / law.length
     fastest = _PEAK_RATE * rate
-    # The law gains speed on its ramps alone, where the quintic is only as steep as at their inner ends.
+    # A trapezoid gains speed on its ramps alone, where the quintic is only as steep as at their inner ends;
+    # other laws gain most of it up to there, and the half that is left free covers the rest.
     ramp = law.corners[1] / law.length
     hardest = _PEAK_BEND * rate**2 + 30.0 * ramp**2 * (1.0 - ramp) ** 2 * growth
     slope, bend = (_largest_so_far(way.postures(way.knots, order)) for order in (1, 2))

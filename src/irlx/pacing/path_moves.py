@@ -173,7 +173,7 @@ def _rows(situation: Situation, block: MoveBlock, plan: PlannedChain, paced: Pac
     position_error, orientation_error, tool_position, tool_rotation = _tool(situation, paced)
     if broken_condition(paced.q, situation.kinematics) is not None:
         raise ArithmeticError("a solved tick breaks a constraint: the inverse transform is at fault")
-    if position_error.max() > PATH_POSITION or orientation_error.max() > PATH_ORIENTATION:
+    if not (position_error.max() <= PATH_POSITION and orientation_error.max() <= PATH_ORIENTATION):
         raise ArithmeticError("a solved tick lies off the path: the inverse transform is at fault")
     return MotionRows(
         block,

@@ -62,8 +62,10 @@ def broken_on_the_way(rows: Array, limits: JointLimits, dt: float) -> BrokenBoun
 def _first(
     kind: LimitKind, values: Array, lower: Array, upper: Array, relative: float, absolute: float
 ) -> BrokenBound | None:
-    over = values > upper * (1.0 + relative) + absolute if relative else values > upper
-    under = values < lower * (1.0 + relative) - absolute if relative else values < lower
+    highest = upper * (1.0 + relative) + absolute if relative else upper
+    lowest = lower * (1.0 + relative) - absolute if relative else lower
+    # Written so that what is no number breaks its bound.
+    over, under = ~(values <= highest), ~(values >= lowest)
     broken = over | under
     if not np.any(broken):
         return None

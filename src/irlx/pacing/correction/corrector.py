@@ -251,7 +251,7 @@ class Corrector:
         kinematics = around.kinematics
         target = corrected_pose(row.rotation, row.position, corrected.correction)
         left = kinematics.sizes(kinematics.difference(corrected.q, target)[0])
-        if left.distance > PATH_POSITION or left.angle > PATH_ORIENTATION:
+        if not (left.distance <= PATH_POSITION and left.angle <= PATH_ORIENTATION):
             raise ArithmeticError("a corrected tick lies off its pose: the inverse transform is at fault")
         missing = self._request - corrected.correction
         self.tally.ended(missing, self._tick, block.origin.line, corrected.governor, corrected.refused)
