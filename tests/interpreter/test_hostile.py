@@ -68,6 +68,13 @@ def test_recursion_without_end(ended, declarations):
     assert ended(declarations, "p;", max_steps=100_000)[0] == "IRL511"
 
 
+def test_ten_thousand_calls_may_wait(ended, final):
+    declarations = """VAR INT: i;
+    FUNCTION f(INT: n): INT; BEGIN IF n = 1 THEN RETURN 1; ENDIF; RETURN f(n - 1) + 1; ENDFCT;"""
+    assert final(declarations, "i := f(10000);")["i"] == 10_000
+    assert ended(declarations, "i := f(10001);", max_steps=100_000)[0] == "IRL511"
+
+
 def test_references_handed_on_a_thousand_times(final):
     declarations = """VAR INT: i := 0; ARRAY [1..2] OF INT: a := (1, 2);
     PROCEDURE r(VAR INT: n; INT: depth); BEGIN

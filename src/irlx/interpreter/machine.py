@@ -71,9 +71,10 @@ class Machine:
         """
         waiting = self._waiting
         self._values += code.values
-        if len(waiting) >= MAX_DEPTH or self._values > MAX_VALUES:
-            depth = len(waiting) + 1
-            raise fail("IRL511", caller[0].source, span, depth=depth, most=MAX_DEPTH, values=self._values)
+        # The main statements wait as well, and are no call.
+        if len(waiting) > MAX_DEPTH or self._values > MAX_VALUES:
+            told = {"depth": len(waiting), "most": MAX_DEPTH, "values": self._values, "held": MAX_VALUES}
+            raise fail("IRL511", caller[0].source, span, **told)
         waiting.append(caller)
         frame = code.blank.copy()
         frame[: len(arguments)] = arguments

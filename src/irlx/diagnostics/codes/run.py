@@ -22,7 +22,8 @@ RUN = (
     ),
     error(
         "IRL511",
-        "{depth} calls wait for each other and their variables hold {values} values; at most {most} calls do",
+        "{depth} calls wait for each other and their variables hold {values} values; "
+        "{most} calls and {held} values may",
         "is there a way out of the recursion?",
     ),
     error("IRL512", "a text of {length} characters is too long; at most {most} are kept"),
