@@ -195,13 +195,16 @@ def test_functions(value, expression, expected):
         ("LN(0)", "LN has no value at 0"),
         ("ASIN(1.5)", "ASIN has no value at 1.5"),
         ("ACOS(-2)", "ACOS has no value at -2"),
-        ("EXP(1000)", "EXP has no value at 1000"),
         ("TAN(90)", "TAN has no value at 90"),
         ("TAN(-270)", "TAN has no value at -270"),
     ],
 )
 def test_functions_outside_their_domain(value_error, expression, expected):
     assert value_error(expression) == ("IRL506", expected, expression)
+
+
+def test_a_result_beyond_the_range_is_no_gap_of_the_function(value_error):
+    assert value_error("EXP(1000)") == ("IRL503", "the result leaves the range of REAL", "EXP(1000)")
 
 
 @pytest.mark.parametrize(

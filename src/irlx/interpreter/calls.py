@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import partial
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 from irlx.interpreter.code import Frame, Label, Step
@@ -11,8 +12,9 @@ from irlx.interpreter.compiled import Compiled, Run, failing, first_failing
 from irlx.interpreter.conversion import finite, whole_number
 from irlx.interpreter.errors import InterpreterError, fail
 from irlx.interpreter.functions import Function
+from irlx.interpreter.rotations import CONVENTIONS
 from irlx.interpreter.scope import Parameter, Routine
-from irlx.interpreter.types import BOOL, INT, Type
+from irlx.interpreter.types import BOOL, INT, REAL, Type
 from irlx.language import tree
 from irlx.language.words import count
 
@@ -38,9 +40,12 @@ class Calls:
             values = [part(frame) for part in runs]
             try:
                 found = apply(*values)
-            except (ValueError, OverflowError, ZeroDivisionError, KeyError):
-                shown = ", ".join(map(_shown, values, parts))
-                data = {"function": function.name, "value": shown}
+            except (ValueError, OverflowError, ZeroDivisionError, KeyError) as cause:
+                if isinstance(cause, OverflowError) and result == REAL:
+                    return finite(inf, where)
+                data = {"function": function.name, "value": ", ".join(map(_shown, values, parts))}
+                if isinstance(cause, KeyError):
+                    data["help"] = f"modes are {', '.join(CONVENTIONS)}"
                 raise fail("IRL506", where.source, where.span, **data) from None
             if result == INT:
                 return whole_number(found, "the result", where)
