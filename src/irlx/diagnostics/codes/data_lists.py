@@ -1,4 +1,4 @@
-"""IRL24x: data lists."""
+"""IRL240 to IRL245, IRL264, IRL265: data lists."""
 
 from irlx.diagnostics.codes.code import error, warning
 

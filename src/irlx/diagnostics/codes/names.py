@@ -1,4 +1,4 @@
-"""IRL2xx: names and types."""
+"""IRL201 to IRL219: names; IRL260 to IRL263: modules."""
 
 from irlx.diagnostics.codes.code import Code, error, warning
 

@@ -1,4 +1,4 @@
-"""IRL34x and IRL42x: options and targets that do not fit the robot as it stands."""
+"""IRL34x, IRL35x and IRL42x to IRL44x: options and targets that do not fit the robot as it stands."""
 
 from irlx.diagnostics.codes.code import error, info, warning
 

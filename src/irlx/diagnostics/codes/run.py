@@ -1,4 +1,4 @@
-"""IRL5xx: what a running program meets."""
+"""IRL5xx, but for clearances and files, and IRL438: what a running program meets."""
 
 from irlx.diagnostics.codes.code import error, warning
 

@@ -1,4 +1,4 @@
-"""IRL246 to IRL280: types and routines, as far as the text tells."""
+"""IRL246 to IRL252 and IRL280: types and routines, as far as the text tells."""
 
 from irlx.diagnostics.codes.code import Code, error, warning
 

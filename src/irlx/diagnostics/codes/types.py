@@ -1,4 +1,4 @@
-"""IRL22x: types and values; IRL266, IRL267: files."""
+"""IRL221 to IRL230: types and values; IRL266, IRL267: files; IRL290, IRL291: frames of the cell."""
 
 from irlx.diagnostics.codes.code import error
 

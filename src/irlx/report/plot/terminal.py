@@ -11,7 +11,7 @@ from plotille import Canvas
 
 from irlx.report.plot.curves import Curves, MoveMark, Track
 from irlx.report.plot.move_marks import spaced_marks
-from irlx.report.plot.quantity import JOINT_QUANTITIES, QUANTITIES
+from irlx.report.plot.quantity import JOINT_QUANTITIES, QUANTITIES, Quantity
 
 Array = NDArray[np.float64]
 
@@ -91,18 +91,17 @@ def _filled(line: tuple[str, int], width: int) -> str:
 
 
 def _joint_panel(
-    all_curves: Sequence[Curves], quantity: object, joint: int, width: int, pen: _Pen
+    all_curves: Sequence[Curves], quantity: Quantity, joint: int, width: int, pen: _Pen
 ) -> list[tuple[str, int]]:
     """Lines of the diagram of a joint."""
     first = all_curves[0]
-    chosen = next(known for known in first.values if known is quantity)
-    title = f"{first.joint_names[joint]} {chosen.value}, {first.units[joint]}{chosen.per}"
-    curves = [(own.t, own.values[chosen][:, joint]) for own in all_curves]
+    title = f"{first.joint_names[joint]} {quantity.value}, {first.units[joint]}{quantity.per}"
+    curves = [(own.t, own.values[quantity][:, joint]) for own in all_curves]
     limits = []
     for own in all_curves:
-        times, lower, upper = own.bounds[chosen].steps(joint)
+        times, lower, upper = own.bounds[quantity].steps(joint)
         limits += [(times, lower), (times, upper)]
-    spans = [span for own in all_curves for span in own.spans(chosen, joint)]
+    spans = [span for own in all_curves for span in own.spans(quantity, joint)]
     return _panel(title, curves, limits, spans, all_curves, width, pen, base=None)
 
 
