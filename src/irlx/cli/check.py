@@ -63,13 +63,14 @@ def command(options: argparse.Namespace) -> int:
 def _print_text(checked: list[tuple[str, list[Diagnostic]]]) -> None:
     from irlx.cli.output import encodable, print_diagnostics
     from irlx.diagnostics import Severity
+    from irlx.language.words import count
 
     for program, found in checked:
         print_diagnostics(found)
         errors = sum(diagnostic.is_error for diagnostic in found)
         notes = sum(diagnostic.severity is Severity.INFO for diagnostic in found)
-        words = f"{program}: {_count(errors, 'error')}, {_count(len(found) - errors - notes, 'warning')}"
-        words += f", {_count(notes, 'note')}" if notes else ""
+        words = f"{program}: {count(errors, 'error')}, {count(len(found) - errors - notes, 'warning')}"
+        words += f", {count(notes, 'note')}" if notes else ""
         print(encodable(words, sys.stdout))
 
 
@@ -81,7 +82,3 @@ def _print_for_machines(found: list[Diagnostic], format: str) -> None:
     text = MACHINE_FORMATS[format](list(dict.fromkeys(found)))
     if text:
         print(encodable(text, sys.stdout))
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from irlx.report.turns import angles_between
 from irlx.streams.joint_stream import JointStream
 from irlx.streams.scan import scan_of
 from irlx.verifier.findings.finding import FAILED
@@ -40,13 +41,9 @@ def limits_over(outline: Outline) -> LimitsInForce:
 def tool_rates(tool: Array, dt: float) -> tuple[Array, Array]:
     """Speed of the tool point (N,), m/s, and of the tool's turn (N,), rad/s, by backward differences.
 
-    `tool` (N, 7) holds x y z in m and a unit quaternion; before the first row the tool rests. The angle
-    between two orientations is 4 arcsin(|p - q| / 2) of their quaternions, the nearer sign taken.
+    `tool` (N, 7) holds x y z in m and a unit quaternion; before the first row the tool rests.
     """
     speed, turn = np.zeros(len(tool)), np.zeros(len(tool))
-    steps = np.diff(tool, axis=0)
-    other = tool[1:, 3:] + tool[:-1, 3:]
-    chord = np.minimum(np.linalg.norm(steps[:, 3:], axis=1), np.linalg.norm(other, axis=1))
-    speed[1:] = np.linalg.norm(steps[:, :3], axis=1) / dt
-    turn[1:] = 4.0 * np.arcsin(np.clip(0.5 * chord, 0.0, 1.0)) / dt
+    speed[1:] = np.linalg.norm(np.diff(tool[:, :3], axis=0), axis=1) / dt
+    turn[1:] = angles_between(tool[:-1, 3:], tool[1:, 3:]) / dt
     return speed, turn

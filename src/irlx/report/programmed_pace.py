@@ -15,6 +15,7 @@ from irlx.motion.line import Line
 from irlx.motion.plan_path import PlannedPath, in_whole_ticks, path_law, plan_path
 from irlx.promises import PATH_POSITION
 from irlx.report.curves import blocks_fit, tool_rates
+from irlx.report.stretches import stretches
 from irlx.streams.joint_stream import JointStream
 from irlx.verifier.moves import MoveRows, moves_of
 from irlx.verifier.outline import Outline
@@ -60,7 +61,7 @@ def programmed_pace(stream: JointStream, outline: Outline) -> ProgrammedPace:
     rates = tool_rates(stream.tool, dt)
     with np.errstate(divide="ignore", invalid="ignore"):
         speed, turn = (np.where(share > 0.0, rate / share, np.nan) for rate in rates)
-    return ProgrammedPace(speed, turn, tuple(_spans(share < SLOWED)))
+    return ProgrammedPace(speed, turn, tuple(stretches(share < SLOWED)))
 
 
 def _known_moves(outline: Outline) -> list[MoveRows]:
@@ -121,10 +122,3 @@ def _planned(tool: Array, block: MoveBlock, dt: float) -> PlannedPath | None:
 def _sane(tool: Array) -> bool:
     """Whether rows are poses at all: a file may hold any numbers."""
     return bool(np.all(np.abs(tool[:, :3]) < _FARTHEST) and np.all(np.abs(tool[:, 3:]).max(axis=1) > 0.1))
-
-
-def _spans(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """First and last index of every run of True."""
-    edges = np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8))
-    begins, beyond = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
-    return [(int(first), int(last) - 1) for first, last in zip(begins, beyond, strict=True)]

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from irlx.report.plot.curves import LimitSpan
 from irlx.report.plot.quantity import Quantity
+from irlx.report.stretches import stretches
 from irlx.streams.joint_stream import JointStream
 from irlx.verifier.limits import LimitsInForce
 
@@ -46,7 +47,7 @@ def limit_spans(
     at[Quantity.POSITION] = _at_position(stream, limits, inside)
     for quantity in quantities:
         for joint in range(at[quantity].shape[1]):
-            for begin, end in _runs(at[quantity][:, joint]):
+            for begin, end in stretches(at[quantity][:, joint]):
                 times = time_of(stream, first + begin - 1), time_of(stream, first + end)
                 yield LimitSpan(quantity, joint, *times)
 
@@ -88,10 +89,3 @@ def _shares(values: Array, lower: Array, upper: Array) -> Array:
         above = np.where((upper > 0.0) & (values > 0.0), values / upper, 0.0)
         below = np.where((lower < 0.0) & (values < 0.0), values / lower, 0.0)
     return np.where(lower < upper, np.nan_to_num(np.maximum(above, below)), 0.0)
-
-
-def _runs(mask: Mask) -> Iterator[tuple[int, int]]:
-    """First and last index of every run of True."""
-    edges = np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8))
-    for first, beyond in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
-        yield int(first), int(beyond) - 1

@@ -12,6 +12,7 @@ from plotille import Canvas
 from irlx.report.plot.curves import Curves, MoveMark, Track
 from irlx.report.plot.move_marks import spaced_marks
 from irlx.report.plot.quantity import JOINT_QUANTITIES, QUANTITIES, Quantity
+from irlx.report.stretches import stretches
 
 Array = NDArray[np.float64]
 
@@ -202,7 +203,7 @@ def _columns(
     """
     grid = times[0] + (times[1] - times[0]) * np.arange(dots[0]) / max(dots[0] - 1, 1)
     good = np.isfinite(values)
-    for begin, end in _whole_parts(good):
+    for begin, end in stretches(good):
         part_t, part = t[begin : end + 1], values[begin : end + 1]
         inside = grid[(grid >= part_t[0]) & (grid <= part_t[-1])]
         at = np.concatenate([part_t, inside])
@@ -218,12 +219,6 @@ def _columns(
             least, most, before = int(joined.min()), int(joined.max()), float(here[-1])
             if most >= 0 and least < dots[1]:
                 yield number, max(least, 0), min(most, dots[1] - 1)
-
-
-def _whole_parts(good: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
-    edges = np.diff(np.concatenate([[False], good, [False]]).astype(np.int8))
-    for first, beyond in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
-        yield int(first), int(beyond) - 1
 
 
 def _merged(curves: Sequence[str], limits: str, pen: _Pen) -> str:

@@ -12,6 +12,7 @@ from irlx.pacing.nearest_rows import FAR, NearestRows
 from irlx.report.message import Message, message
 from irlx.report.replay.frames import MOST_FRAMES, Columns, Frames
 from irlx.report.segment import Segment
+from irlx.report.turns import angles_between
 from irlx.robot.limits import JointLimits, alike
 from irlx.streams.joint_stream import BlockRecord, StreamHeader
 
@@ -119,7 +120,7 @@ class Gathering:
             tool,
             (q - q_before) / dt,
             np.linalg.norm(tool[:, :3] - tool_before[:, :3], axis=1) / dt,
-            _angles(tool_before[:, 3:], tool[:, 3:]) / dt,
+            angles_between(tool_before[:, 3:], tool[:, 3:]) / dt,
             room,
             distance,
             pair,
@@ -142,12 +143,3 @@ class Gathering:
         numbers = np.array([*known, FAR], dtype=np.int64)[nearest.pair]
         room = nearest.distance - np.append(nearest.margin, 0.0)[nearest.pair]
         return room, nearest.distance, numbers
-
-
-def _angles(before: Array, after: Array) -> Array:
-    """Angles (M,) rad between orientations as unit quaternions (M, 4), whatever their signs.
-
-    Of quaternions p, q the angle between is 4 asin(|p - q| / 2), for the sign of q that is nearer.
-    """
-    apart = np.minimum(np.linalg.norm(after - before, axis=1), np.linalg.norm(after + before, axis=1))
-    return np.asarray(4.0 * np.arcsin(np.minimum(0.5 * apart, 1.0)))
