@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from irlx.diagnostics import Diagnostic, IrlxError, Place, report
+from irlx.diagnostics import Diagnostic, IrlxError, report
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.diagnostics.extra import require_extra
 from irlx.report.plot.chosen_joints import busiest_joints, joints_named, told_numbers
@@ -19,7 +19,6 @@ from irlx.report.plot.curves import Curves
 from irlx.report.plot.make_curves import Subject, curves_of
 from irlx.report.plot.quantity import JOINT_QUANTITIES, QUANTITIES, Quantity
 from irlx.streams.formats import read_stream
-from irlx.streams.joint_stream import JointStream
 
 if TYPE_CHECKING:
     # Not imported: a run brings along all that made it, matplotlib is an extra, and joints need no cell.
@@ -169,7 +168,9 @@ def _subject(source: Run | PathLike, cell: Cell | None, asks: bool) -> Subject:
         stream, name = source.stream, source.stream.header.program_name
         beside, clearances = Path.cwd(), source.clearances
     if cell is not None:
-        _check_cell(stream, cell)
+        from irlx.recorded import check_joints
+
+        check_joints(stream.header, cell)
         return Subject(stream, name, cell.robot, cell.scene, clearances)
     if not asks:
         return Subject(stream, name, clearances=clearances)
@@ -183,16 +184,6 @@ def _subject(source: Run | PathLike, cell: Cell | None, asks: bool) -> Subject:
     if reference is None:
         return Subject(stream, name, clearances=clearances)
     return Subject(stream, name, reference.robot, reference.scene, clearances)
-
-
-def _check_cell(stream: JointStream, cell: Cell) -> None:
-    """Raises CellError, IRL727, for a cell whose robot has other joints than the stream."""
-    from irlx.cell.errors import CellError
-
-    expected, found = stream.header.joint_names, cell.robot.joint_names
-    if expected != found:
-        told: dict[str, Any] = {"expected": ", ".join(expected), "found": ", ".join(found)}
-        raise CellError(report("IRL727", Place(cell.file), **told))
 
 
 def _check_joints(subjects: Sequence[Subject]) -> None:

@@ -162,8 +162,8 @@ def check_joints(header: StreamHeader, cell: Cell) -> None:
     """Raises CellError, IRL727, for a robot with other joints than the recorded one."""
     expected, names = header.joint_names, cell.robot.joint_names
     if expected != names:
-        told = {"expected": ", ".join(expected), "found": ", ".join(names)}
-        raise CellError(report("IRL727", Place(cell.file), **told))  # type: ignore[arg-type]
+        told: dict[str, Any] = {"expected": ", ".join(expected), "found": ", ".join(names)}
+        raise CellError(report("IRL727", Place(cell.file), **told))
 
 
 def _stopped(path: Path, records: list[BlockRecord]) -> frozenset[int]:

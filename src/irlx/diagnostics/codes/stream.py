@@ -119,7 +119,7 @@ STREAM: tuple[Code, ...] = (
     error(
         "IRL727",
         "the robot has the joints {found}; those of the recorded one are {expected}",
-        "replay it in a cell whose robot has joints of these names in this order",
+        "name the cell of a robot whose joints have these names in this order",
     ),
     error(
         "IRL728",
