@@ -43,6 +43,25 @@ def test_factors_meet_where_series_end() -> None:
         assert np.max(np.abs(near - far)) < 1e-10
 
 
+def test_small_and_large_vectors_side_by_side() -> None:
+    """Each gets what it gets alone, whatever stands beside it: a series near 0, closed forms elsewhere."""
+    rng = np.random.default_rng(12)
+    r = rng.normal(size=(6, 3)) * np.array([1e-3, 1.0, 0.0, 2.0, 1e-9, 0.3])[:, None]
+    dr, ddr = rng.normal(size=(2, 6, 3))
+    for together, alone in (
+        (
+            angular_rates(r, dr, ddr),
+            [angular_rates(*(part[k : k + 1] for part in (r, dr, ddr))) for k in range(6)],
+        ),
+        (
+            vector_rates(r, dr, ddr),
+            [vector_rates(*(part[k : k + 1] for part in (r, dr, ddr))) for k in range(6)],
+        ),
+    ):
+        for found, each in zip(together, zip(*alone, strict=True), strict=True):
+            np.testing.assert_allclose(found, np.concatenate(each), rtol=1e-12, atol=1e-12)
+
+
 def test_arc_length() -> None:
     rng = np.random.default_rng(8)
     curve = PolynomialCurve(np.array([0.0, 0.4, 1.0]), rng.normal(size=(4, 2, 3)))
@@ -63,6 +82,21 @@ def test_arc_length() -> None:
         assert found == pytest.approx(exact, abs=1e-12)
     s = np.linspace(0.0, curve.length, 301)
     assert np.max(np.abs(curve.length_at(curve.parameters_at(s)) - s)) < 1e-14 * curve.length
+
+
+@pytest.mark.parametrize("slowest", np.linspace(0.01, 0.99, 12))
+def test_arc_length_of_a_curve_that_all_but_stands(slowest: float) -> None:
+    """P = (u^2/2 - c u, e u, 0) runs at sqrt((u - c)^2 + e^2), whose integral is closed form."""
+    e = 1e-3
+    curve = PolynomialCurve(
+        np.array([0.0, 1.0]), np.array([[[0.5, 0, 0]], [[-slowest, e, 0]], [[0.0, 0, 0]]])
+    )
+
+    def primitive(x: float) -> float:
+        return 0.5 * (x * np.hypot(x, e) + e * e * np.arcsinh(x / e))
+
+    exact = primitive(1.0 - slowest) - primitive(-slowest)
+    assert curve.length == pytest.approx(exact, rel=1e-12)
 
 
 def test_turn_curve_meets_its_jets() -> None:

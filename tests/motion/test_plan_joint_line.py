@@ -153,6 +153,7 @@ def test_start_equal_to_goal_takes_no_tick(kit) -> None:
     planned = plan_joint_line(q, q.copy(), kit.law(), limits(1.0), NAMES, 0.01, kit.place)
     assert planned.ticks == 0
     assert planned.postures(0.01).shape == (0, 4)
+    assert planned.law.length == planned.law.duration == planned.law.speed == 0.0
 
 
 @pytest.mark.req("MOT-04")

@@ -1,0 +1,94 @@
+"""One blend by itself: where it comes nearest to the corner, how it is turned there, how little it bends."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.interpolate import PPoly
+from scipy.spatial.transform import Rotation
+
+from irlx.motion.blended_corner import blended_corner
+from irlx.motion.hermite import Jet, quintic
+from irlx.motion.line import Line
+
+pytestmark = pytest.mark.req("MOT-06")
+
+
+def corner_of(seed: int) -> tuple[Line, Line]:
+    """Two lines that meet, the orientation turning about another axis on each."""
+    rng = np.random.default_rng(seed)
+    points = np.cumsum(rng.normal(size=(3, 3)), axis=0)
+    turns = Rotation.from_rotvec(0.7 * rng.normal(size=(3, 3))).as_matrix()
+    return Line(points[0], turns[0], points[1], turns[1]), Line(points[1], turns[1], points[2], turns[2])
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_what_it_misses_the_corner_by(seed: int) -> None:
+    before, after = corner_of(seed)
+    blend = blended_corner(before, after, 0.2)
+    poses = blend.path.poses(np.linspace(0.0, blend.path.length, 4001))
+    distances = np.linalg.norm(poses.position - before.end_position, axis=1)
+    assert blend.miss == pytest.approx(np.min(distances), rel=1e-6)
+    (there,) = blend.path.poses(np.array([blend.corner])).rotation
+    missed = Rotation.from_matrix(before.end_rotation.T @ there).magnitude()
+    assert missed > 1e-3
+    assert blend.miss_angle == pytest.approx(missed, rel=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_it_begins_and_ends_on_the_paths_with_their_derivatives(seed: int) -> None:
+    before, after = corner_of(seed)
+    path = blended_corner(before, after, 0.2).path
+    sides = ((before, before.length - 0.2, 0.0), (after, 0.2, path.length))
+    for whole, there, here in sides:
+        for one, other in zip(
+            whole.derivatives(np.array([there])), path.derivatives(np.array([here])), strict=True
+        ):
+            assert np.allclose(one, other, rtol=0.0, atol=1e-9)
+        poses = whole.poses(np.array([there])), path.poses(np.array([here]))
+        assert np.allclose(poses[0].position, poses[1].position, rtol=0.0, atol=1e-12)
+        assert np.allclose(poses[0].rotation, poses[1].rotation, rtol=0.0, atol=1e-12)
+
+
+def peak_bend(start: Jet, end: Jet, tangent: float) -> float:
+    """Largest curvature of the quintic whose tangents are so long."""
+    jets = [Jet(jet.value, tangent * jet.rate, tangent**2 * jet.bend) for jet in (start, end)]
+    curve = PPoly(quintic(*jets, 1.0)[:, None, :], [0.0, 1.0])
+    u = np.linspace(0.0, 1.0, 401)
+    slope, bend = curve.derivative(1)(u), curve.derivative(2)(u)
+    return float(np.max(np.linalg.norm(np.cross(slope, bend), axis=1) / np.linalg.norm(slope, axis=1) ** 3))
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_no_other_length_of_the_tangents_bends_much_less(seed: int) -> None:
+    """Fifteen lengths are tried; between two of them lies 5 %, which makes few per cent of the bend."""
+    before, after = corner_of(seed)
+    path = blended_corner(before, after, 0.2).path
+    ends = [
+        Jet(whole.poses(s).position[0], whole.derivatives(s)[0][0], whole.second_derivatives(s)[0][0])
+        for whole, s in ((before, np.array([before.length - 0.2])), (after, np.array([0.2])))
+    ]
+    chord = np.linalg.norm(ends[1].value - ends[0].value)
+    least = min(peak_bend(*ends, tangent) for tangent in chord * np.linspace(0.6, 2.5, 40))
+    assert np.max(path.shape.curvature) < 1.05 * least
+
+
+def test_of_curves_that_bend_alike_the_most_even_one_is_taken() -> None:
+    """Straight on all of them are straight; at 0.9 of the way the speed over the parameter varies little."""
+    turn = np.eye(3)
+    before, after = (
+        Line(np.array([x, 0.0, 0.0]), turn, np.array([x + 1.0, 0.0, 0.0]), turn) for x in (0.0, 1.0)
+    )
+    slope = blended_corner(before, after, 0.25).path.curve.velocities(np.array([0.0]))
+    assert slope[0] == pytest.approx([0.45, 0.0, 0.0], abs=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_largest_values_are_those_of_the_derivatives(seed: int) -> None:
+    """Of sections, each looked at in five places: near the largest of a fine search, not far above it."""
+    before, after = corner_of(seed)
+    path = blended_corner(before, after, 0.2).path
+    s = np.linspace(0.0, path.length, 2001)
+    rates, (bends, turns) = path.derivatives(s)[1], path.second_derivatives(s)
+    fine = [float(np.max(np.linalg.norm(values, axis=1))) for values in (rates, bends, turns)]
+    assert [path.turn_rate, path.curvature, path.turn_bend] == pytest.approx(fine, rel=0.02)

@@ -1,0 +1,52 @@
+"""How far a blend reaches, by C_PASS and where less room is than was asked for."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from irlx.blocks import Blend, MoveKind
+from irlx.motion.blended_corner import blended_corner
+from irlx.motion.corner import Corner, corner_between
+from irlx.motion.edges import edges_of
+
+pytestmark = pytest.mark.req("MOT-06")
+
+
+def bent(path, law, speed: float) -> float:
+    """Accelerations that a path needs at a steady speed over those allowed; half of ACC_ORI for the turn."""
+    s = np.linspace(0.0, path.length, 2001)
+    along, turning = path.second_derivatives(s)
+    across = speed**2 * np.max(np.linalg.norm(along, axis=1)) / law.acc
+    return max(across, 2.0 * speed**2 * np.max(np.linalg.norm(turning, axis=1)) / law.acc_ori)
+
+
+@pytest.mark.parametrize("turned", [0.0, 1.2], ids=["by the curve", "by the turn"])
+@pytest.mark.parametrize("speed", [0.5, 1.4])
+def test_c_pass_keeps_the_speed_and_no_more(kit, turned: float, speed: float) -> None:
+    """Next to straight lines all that bends is in inverse proportion to the distance."""
+    law = kit.law(speed=speed, acc_ori=1.5)
+    turn = Rotation.from_rotvec([turned, 0.0, 0.0]).as_quat()
+    back = Rotation.from_rotvec([turned, -0.5 * turned, 0.0]).as_quat()
+    first = kit.leg(kit.block((4.0, 0.0, 0.0), turn, law), Blend())
+    second = kit.leg(kit.block((4.0, 4.0, 0.0), back, law))
+    (before,) = edges_of(first, 0, np.eye(3), np.zeros(3))
+    (after,) = edges_of(second, 1, before.path.end_rotation, before.path.end_position)
+    corner = corner_between(before, after)
+    assert isinstance(corner, Corner)
+    assert not corner.cut
+    assert bent(corner.blend.path, law, speed) == pytest.approx(1.0, abs=0.03)
+    closer = blended_corner(before.path, after.path, 0.9 * corner.distance)
+    assert bent(closer.path, law, speed) == pytest.approx(1.0 / 0.9, rel=0.03)
+
+
+def test_a_blend_behind_a_spline_takes_half_of_its_last_piece(kit) -> None:
+    points = [(0.1, 0.1, 0.0), (0.3, 0.0, 0.0)]
+    spline = kit.leg(kit.path(MoveKind.SPLINE, points), Blend(5.0))
+    (edge,) = edges_of(spline, 0, np.eye(3), np.zeros(3))
+    fine = edge.path.poses(np.linspace(0.0, edge.path.length, 4001)).position
+    steps = np.linalg.norm(np.diff(fine, axis=0), axis=1)
+    via = int(np.argmin(np.linalg.norm(fine - points[0], axis=1)))
+    assert edge.room == pytest.approx((0.5 * np.sum(steps[:via]), 0.5 * np.sum(steps[via:])), rel=2e-3)
+    assert edge.marks == pytest.approx((np.sum(steps[:via]), edge.path.length), rel=2e-3)
