@@ -64,6 +64,10 @@ FLOW = {
     "IF x > 1 THEN HALT; ENDIF; x := 2;": [],
     "CASE i OF WHEN 1: HALT; DEFAULT: HALT; ENDCASE; x := 2;": [("IRL283", "x := 2")],
     "CASE i OF WHEN 1: HALT; ENDCASE; x := 2;": [],
+    "CASE i OF WHEN 1: HALT; DEFAULT: x := 1; ENDCASE; x := 2;": [],
+    "CASE i OF WHEN 1: x := 1; DEFAULT: HALT; ENDCASE; x := 2;": [],
+    "IF x > 1 THEN x := 1; ELSE RETURN; ENDIF; x := 2;": [],
+    "IF x > 1 THEN HALT; ELSE x := 1; ENDIF; x := 2;": [],
     "WHILE x > 1 DO EXIT; x := 2; ENDWHILE;": [("IRL283", "x := 2")],
     "WHILE x > 1 DO HALT; ENDWHILE; x := 2;": [],
     "FOR i := 1 TO 3 DO HALT; ENDFOR; x := 2;": [],
@@ -80,6 +84,8 @@ FLOW = {
         ("IRL284", "WHILE TRUE DO WHILE b DO EXIT; ENDWHILE; ENDWHILE")
     ],
     "WHILE TRUE DO CASE i OF WHEN 1: EXIT; ENDCASE; ENDWHILE; x := 1;": [],
+    "WHILE TRUE DO CASE i OF WHEN 1: x := 1; DEFAULT: EXIT; ENDCASE; ENDWHILE; x := 1;": [],
+    "WHILE TRUE DO IF b THEN x := 1; ELSE EXIT; ENDIF; ENDWHILE; x := 1;": [],
     "WHILE TRUE DO stop; ENDWHILE;": [],
     "WHILE TRUE DO x := 1; ENDWHILE; REPEAT x := 1; UNTIL TRUE;": [
         ("IRL284", "WHILE TRUE DO x := 1; ENDWHILE")
