@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import hashlib
 import json
+import signal
 import tempfile
 import time
 from bisect import bisect_right
@@ -20,6 +21,8 @@ from mutations import Mutation
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = ROOT / "src" / "irlx"
+LONGEST = 3.0
+"""Tests that take more processor time (s) than this while lines are recorded do not judge."""
 LEFT_OUT = ("tests/language/highlight", "tests/language/test_robustness.py")
 """Tests of another folder, and those that measure time or start processes."""
 OPTIONS = ["-q", "-s", "-p", "no:cacheprovider", "-p", "no:xdist", "--no-header"]
@@ -40,6 +43,7 @@ class Recorder:
 
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         """Caches are emptied before each, since a test needs what it would have to compute were it alone."""
+        signal.signal(signal.SIGPROF, _given_up)
         gc.unfreeze()
         caches = [one for one in gc.get_objects() if isinstance(one, _CACHED) and _is_ours(one)]
         for item in session.items:
@@ -47,7 +51,9 @@ class Recorder:
                 known.cache_clear()
             self.coverage.switch_context(item.nodeid)
             begin = time.process_time()
+            signal.setitimer(signal.ITIMER_PROF, LONGEST)
             reports = runtestprotocol(item, log=False, nextitem=None)
+            signal.setitimer(signal.ITIMER_PROF, 0.0)
             self.seconds[item.nodeid] = time.process_time() - begin
             self.coverage.switch_context("")
             if any(report.failed for report in reports):
@@ -63,6 +69,10 @@ class Recorder:
             for path in data.measured_files()
         }
         return {"seconds": self.seconds, "failed": self.failed, "lines": lines}
+
+
+def _given_up(*_: object) -> None:
+    raise TimeoutError("too long to judge")
 
 
 _CACHED = type(cache(len))
@@ -106,9 +116,13 @@ class ExecutedLines:
         return json.loads(kept.read_text(encoding="utf-8"))
 
     def _add(self, recorded: dict) -> None:
-        for test in recorded["failed"]:
-            print(f"left out, fails undamaged: {test}")
-        self.seconds |= {k: v for k, v in recorded["seconds"].items() if k not in recorded["failed"]}
+        for test, taken in recorded["seconds"].items():
+            if taken > 0.95 * LONGEST:
+                print(f"left out, takes too long: {test}")
+            elif test in recorded["failed"]:
+                print(f"left out, fails undamaged: {test}")
+            else:
+                self.seconds[test] = taken
         for path, lines in recorded["lines"].items():
             for line, tests in lines.items():
                 self.lines.setdefault((path, int(line)), set()).update(tests)

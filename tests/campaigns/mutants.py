@@ -60,7 +60,7 @@ LIBRARIES = (
     "numpy scipy.interpolate scipy.linalg scipy.optimize scipy.spatial.transform pinocchio coal proxsuite"
 )
 LIBRARIES += " pydantic orjson hypothesis rich daqp lark ruckig"
-PATIENCE = 5.0
+PATIENCE = 3.0
 """How many times as long as usual a test may take; the usual was measured while lines were recorded."""
 KILLED, SURVIVED, AGAIN = 1, 0, 3
 RESULTS = ("killed", "too slow", "survived", "not covered")
@@ -111,7 +111,7 @@ def _bodies(code: CodeType, first: int) -> Iterable[CodeType]:
 def run(items: list[pytest.Item], seconds: dict[str, float]) -> int:
     """Runs tests until one fails."""
     for item in items:
-        limited(2.0 + PATIENCE * seconds[item.nodeid])
+        limited(1.0 + PATIENCE * seconds[item.nodeid])
         try:
             reports = runtestprotocol(item, log=False, nextitem=None)
         except BaseException:
