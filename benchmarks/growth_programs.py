@@ -1,4 +1,4 @@
-"""Programs of any length, depth and number of routines that run, and move little or not at all."""
+"""Programs of any length and number of routines that run, and move little or not at all."""
 
 from __future__ import annotations
 
@@ -69,10 +69,3 @@ def of_routines(count: int) -> str:
     declared = "".join(ROUTINE.replace("@k@", str(number)) for number in range(count))
     calls = "".join(f"  routine_{number}(1., sum);\n" for number in range(count))
     return f"{HEAD}{declared}BEGIN\n{calls}ENDPROGRAM;\n"
-
-
-def of_depth(depth: int) -> str:
-    """A program of statements nested that deep, one inside the other."""
-    begins = "".join(f"{'  ' * level}IF n < {level} THEN\n" for level in range(1, depth + 1))
-    ends = "".join(f"{'  ' * level}ENDIF;\n" for level in range(depth, 0, -1))
-    return f"{HEAD}BEGIN\n{begins}{'  ' * depth}  n := 1;\n{ends}ENDPROGRAM;\n"

@@ -23,6 +23,7 @@ from time import process_time
 import numpy as np
 import pinocchio as pin
 
+from balls import ball, far
 from irlx.blocks import MotionLaw, MoveBlock, MoveKind, ObstacleBlock, Origin, PoseTarget
 from irlx.cell.load import load_cell
 from irlx.diagnostics import Place, SourceText, Span
@@ -34,8 +35,7 @@ from irlx.scene.distances import Distances
 from irlx.scene.obstacle import Obstacle
 from irlx.scene.scene import Scene
 from irlx.scene.watched_pair import watched_pairs
-from irlx.solids.placement import Placement
-from irlx.solids.shape import Solid, Sphere
+from irlx.solids.shape import Solid
 
 ORIGIN = Origin("benchmark", 0, 1, 1)
 TEXT = SourceText("benchmark", "-\n")
@@ -46,21 +46,13 @@ PINK = ["pin-pink", "qpsolvers", "loop-rate-limiters", "daqp"]
 MET = 1e-7
 
 
-def ball(name: str, position: np.ndarray) -> Obstacle:
-    """A ball of 50 mm, felt from 300 mm on."""
-    place = Placement(tuple(float(x) for x in position))
-    return Obstacle(name, (Solid(Sphere(0.05)),), place, 0.01, 0.3)
-
-
 def cases() -> dict[str, list[Obstacle]]:
     """Obstacles of each case by its name."""
-    away = np.random.default_rng(0).normal(size=(100, 3))
-    away *= 3.0 / np.linalg.norm(away, axis=1, keepdims=True)
     near = ((0.1, -0.25, 0.75), (0.45, -0.1, 0.9), (-0.1, 0.4, 0.9), (0.1, 0.15, 1.0))
     return {
         "no obstacles": [],
-        "100 far away": [ball(f"far{k}", position) for k, position in enumerate(away)],
-        "4 felt": [ball(f"near{k}", np.array(position)) for k, position in enumerate(near)],
+        "100 far away": far(100),
+        "4 felt": [ball(k, np.array(position)) for k, position in enumerate(near)],
     }
 
 

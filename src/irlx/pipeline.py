@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from irlx.blocks import AskPause, AskStandstill, Block, LinkFrame, Origin, Question
+from irlx.cell.link_meshes import resolved_solids
 from irlx.cell.setting import setting_of
 from irlx.diagnostics import Diagnostic, IrlxError, Place, report
 from irlx.interpreter.channels.channels import Channels, Told
@@ -35,6 +36,7 @@ from irlx.pacing.situation import PacingSetup
 from irlx.pacing.watch import Watch
 from irlx.recorded import Recorded
 from irlx.scene.sightings import Sightings
+from irlx.solids.mesh_file import MeshFileError
 from irlx.streams.atomic import AtomicFile
 from irlx.streams.joint_stream import StreamHeader
 
@@ -95,6 +97,9 @@ class Execution:
             except PauseAborted as aborted:
                 raise aborted.error from None
             except Exception as error:
+                if isinstance(error, MeshFileError):
+                    # Where that is a file of the robot's links, all such files at fault are told.
+                    resolved_solids(self.job.cell.robot, self.job.cell.model, self.job.cell.file)
                 if os.environ.get("IRLX_DEBUG"):
                     raise
                 # A fault of irlx itself must not cost what was executed before it.

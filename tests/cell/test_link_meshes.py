@@ -2,6 +2,7 @@
 
 import pytest
 
+import irlx
 from irlx.cell.errors import CellError
 from irlx.cell.link_meshes import resolved_solids
 from irlx.cell.robot_data import robot_data_folder
@@ -127,6 +128,32 @@ def test_without_the_readers(load, tmp_path, monkeypatch, module, package, endin
     ((code, _, message),) = faults_of(found)
     assert code == "IRL641"
     assert message.endswith(f'the package {package} is not installed: pip install "irlx[meshes]"')
+
+
+BALL = '[[obstacle]]\nname = "ball"\nshape = "sphere"\nradius = 50\nxyz = [0, 0, 30000]\n'
+
+
+@pytest.mark.parametrize("body", ["OBSTACLE ball; OBSTACLEEND ball;", "x := CLEARANCE(R_JOINT_ACT, ball);"])
+@pytest.mark.parametrize(
+    ("content", "code"), [(None, "IRL639"), (b"v 0 0 0\n", "IRL640"), (dae(CUBE, TRIANGLES), "IRL641")]
+)
+def test_a_run_that_needs_a_mesh_tells_what_is_wrong_with_it(
+    load, tmp_path, monkeypatch, content, code, body
+):
+    """The cell loads without: only obstacles that are asked for need the shapes of links."""
+    if content is not None:
+        mesh_at(tmp_path, "ws/my_arm/urdf/bad.obj", content)
+    found = load("bad.obj", BALL)
+    if code == "IRL641":
+        monkeypatch.setattr(mesh_file, "_is_installed", lambda name: False)
+    program = tmp_path / "p.irl"
+    program.write_text("PROGRAM p;\nVAR REAL: x;\nBEGIN\nx := 1;\nENDPROGRAM\n")
+    assert irlx.run(program, found).summary.complete
+    program.write_text(f"PROGRAM p;\nVAR REAL: x;\nBEGIN\n{body}\nENDPROGRAM\n")
+    with pytest.raises(irlx.RunError) as caught:
+        irlx.run(program, found)
+    assert caught.value.diagnostics[0].code == code
+    assert code in [told.code for told in irlx.check(program, tmp_path / "cell.toml", motion=True)]
 
 
 @needs_robot_data

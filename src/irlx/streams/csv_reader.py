@@ -15,22 +15,14 @@ from irlx.diagnostics import Place, report
 from irlx.streams.csv_writer import column_line, comment
 from irlx.streams.error import StreamError, broken, open_to_read
 from irlx.streams.header_plain import PlainFormError, VersionError, header_from_plain
-from irlx.streams.joint_stream import FORMAT_VERSION, Floats, JointStream, StreamHeader
+from irlx.streams.joint_stream import FORMAT_VERSION, Floats, StreamHeader
 from irlx.streams.numbers import NUMBER_CHARACTERS, table_of
-from irlx.streams.scan import RowBatch, ScanItem, StatedRates, StreamEnd, collect, rising_rows
+from irlx.streams.scan import RowBatch, ScanItem, StatedRates, StreamEnd, rising_rows
 
 _PORTION = 1 << 19
 _LARGEST = 2**53
 _END = b"# end: "
 _SPLITS = np.arange(1, 4)
-
-
-def read_csv(path: str | os.PathLike[str]) -> JointStream:
-    """Stream of a CSV file that `CsvWriter` wrote: header and samples, without blocks.
-
-    Raises what `scan_csv` raises.
-    """
-    return collect(scan_csv(path))
 
 
 def scan_csv(path: str | os.PathLike[str]) -> Iterator[ScanItem]:

@@ -21,8 +21,8 @@ import numpy as np
 from irlx.diagnostics import Place, report
 from irlx.streams.error import StreamError, broken, open_to_read
 from irlx.streams.header_plain import PlainFormError, VersionError, header_from_plain, record_from_plain
-from irlx.streams.joint_stream import FORMAT_VERSION, BlockRecord, Integers, JointStream, StreamHeader
-from irlx.streams.scan import RowBatch, ScanItem, StatedRates, StreamEnd, collect, rising_rows
+from irlx.streams.joint_stream import FORMAT_VERSION, BlockRecord, Integers, StreamHeader
+from irlx.streams.scan import RowBatch, ScanItem, StatedRates, StreamEnd, rising_rows
 
 _PORTION = 4096
 _REST = 1 << 16
@@ -32,14 +32,6 @@ _HEAD = re.compile(
 )
 _LONGEST_HEAD = 10_000
 _DAMAGE = (zipfile.BadZipFile, zlib.error, KeyError, ValueError, EOFError, NotImplementedError, RuntimeError)
-
-
-def read_npz(path: str | os.PathLike[str]) -> JointStream:
-    """Stream of an NPZ file that `NpzWriter` wrote, blocks included.
-
-    t, qd and qdd of the stream follow from the rest. Raises what `scan_npz` raises.
-    """
-    return collect(scan_npz(path))
 
 
 def scan_npz(path: str | os.PathLike[str]) -> Iterator[ScanItem]:
