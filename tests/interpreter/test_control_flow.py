@@ -43,6 +43,7 @@ RUNS = [
     ("FOR x := 0 TO 0.3 STEP 0.1 DO k := k + 1; ENDFOR;", {"k": 4, "x": 0.30000000000000004}),
     ("FOR x := 1 DOWNTO 0 STEP 0.25 DO k := k + 1; ENDFOR;", {"k": 5, "x": 0.0}),
     ("FOR a[2] := 1 TO 3 DO k := k + a[2]; ENDFOR;", {"k": 6}),
+    ("i := 1; FOR a[i] := 5 TO 7 DO i := 2; k := k + a[1]; ENDFOR;", {"k": 18, "i": 2}),
     ("FOR i := 1 TO 3 DO FOR j := 1 TO i DO k := k + 1; ENDFOR; ENDFOR;", {"k": 6}),
     ("FOR i := 9223372036854775806 TO 9223372036854775807 DO k := k + 1; ENDFOR;", {"k": 2}),
     ("WHILE k < 5 DO k := k + 2; ENDWHILE;", {"k": 6}),

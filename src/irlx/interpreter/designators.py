@@ -146,8 +146,10 @@ class Designators:
 
     def setter(
         self, node: tree.Designator, *, keep: bool = False, followed: bool = False
-    ) -> tuple[Type, Callable[[Frame, Any], None]]:
-        """Type of a designator that may be set, and what sets it in a frame. Raises InterpreterError: IRL211.
+    ) -> tuple[Type, Callable[[Frame, Any], None], Callable[[Frame], object] | None]:
+        """Type of a designator that may be set, what sets it in a frame, and what finds its place there.
+
+        The last is None where nothing can be wrong with the place. Raises InterpreterError: IRL211.
 
         What the robot follows is set by assignments alone, which pass `followed`; for others it is IRL249.
 
@@ -161,7 +163,8 @@ class Designators:
             kept = self._expressions.kept
             steps = (s if isinstance(s, int) else kept(node, Compiled(INT, s)).run for s in way.steps)
             way = replace(way, steps=tuple(steps))
-        return way.type, _setter(stored, way)
+        known = all(isinstance(step, int) for step in way.steps)
+        return way.type, _setter(stored, way), None if known else way.of
 
     def _settable(self, node: tree.Designator) -> tuple[Variable | Local, Way]:
         source, stored = self._expressions.source, self.stored(node.base)

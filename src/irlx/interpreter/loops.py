@@ -24,7 +24,7 @@ _NEARLY = 1e-9
 def add_for(statements: Statements, node: tree.For) -> None:
     """Add the steps of a FOR. Raises InterpreterError: IRL222 for a variable that is no number, IRL211."""
     assembler, expressions = statements.assembler, statements.expressions
-    type, set_ = expressions.designators.setter(node.variable)
+    type, set_, _ = expressions.designators.setter(node.variable, keep=True)
     if type not in (INT, REAL):
         data = {"expected": "a variable of type INT or REAL", "found": type.name}
         raise fail("IRL222", statements.context.source, node.variable.span, **data)

@@ -28,7 +28,7 @@ def add_change(statements: Statements, node: tree.Assignment, variable: Followed
     context, machine = statements.context, statements.context.machine
     keep = statements.expressions.suspends(node.value)
     designators = statements.expressions.designators
-    type, set_ = designators.setter(node.target, keep=keep, followed=True)
+    type, set_, _ = designators.setter(node.target, keep=keep, followed=True)
     run = statements.expressions.value(node.value, type).run
 
     def make(following: int) -> Step:

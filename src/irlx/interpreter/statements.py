@@ -117,13 +117,19 @@ class Statements:
     def assign(self, target: tree.Designator, value: tree.Expression, node: tree.Node) -> None:
         """Add the steps of an assignment; the place is found before the value."""
         keep = self.expressions.suspends(value)
-        type, set_ = self.expressions.designators.setter(target, keep=keep)
-        found = self.expressions.value(value, type)
-        run = found.run
+        type, set_, find = self.expressions.designators.setter(target, keep=keep)
+        run = self.expressions.value(value, type).run
 
         def make(following: int) -> Step:
             def step(frame: Frame) -> int:
-                set_(frame, run(frame))
+                try:
+                    found = run(frame)
+                except InterpreterError:
+                    # Where the place is wrong as well it is told: it stands further left.
+                    if find is not None:
+                        find(frame)
+                    raise
+                set_(frame, found)
                 return following
 
             return step
