@@ -13,6 +13,7 @@ from irlx.interpreter.interpret import Interpretation
 from irlx.interpreter.setting import Setting
 from irlx.interpreter.values import UNSET
 from irlx.language.analysis import analyse
+from irlx.language.parser import parse
 from irlx.language.source import source_text
 from reference_evaluator.program import Ending, evaluated
 from reference_evaluator.trouble import TooLong
@@ -137,7 +138,7 @@ def compared(marked) -> tuple[str, list[str]]:
     errors = {d.code for d in analysis.diagnostics if d.is_error}
     if errors:
         return "refused", sorted(errors - STATIC)
-    whole = analyse(source_text("t.irl", with_all_parentheses(marked)))
+    whole = parse(source_text("t.irl", with_all_parentheses(marked)))
     try:
         expected = evaluated(whole.tree, JOINTS)
     except TooLong:
