@@ -1,9 +1,9 @@
 """Ticks of random robots with everything that stands against them, by irlx and by optimisers of others.
 
-`second_ticks` draws robots of 4 to 12 joints with limits, frozen joints, states on limits, zeros and residues
+`second_ticks` takes robots of 4 to 12 joints with limits, frozen joints, states on limits, zeros and residues
 of 1e-16, and asks of every tick: are the bounds those of the table of the reference, is the tool on its path,
-is phi at its least by its conditions and by two other solvers, and, where irlx finds no step, is there none. More
-of them: `tests/campaigns/differential.py ticks`.
+is phi at its least by its conditions and by two other solvers, and, where irlx finds no step, is there none.
+More of them: `tests/campaigns/differential.py ticks`.
 """
 
 from collections import Counter

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from computing_programs import CLOSE, OPEN, with_all_parentheses, with_few_parentheses, written
+from computing_programs import with_all_parentheses, with_few_parentheses, written
+from computing_tables import CLOSE, OPEN
 from irlx.blocks import Question
 from irlx.interpreter.channels.setup import ChannelSetup
 from irlx.interpreter.errors import InterpreterError
