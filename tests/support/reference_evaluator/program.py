@@ -270,6 +270,8 @@ class Frame:
         step = 1 if node.step is None else self.expressions.of_type(node.step, place.type).data
         if step <= 0:
             raise Trouble("IRL505", node.step)
+        if stop - start in BEYOND:
+            raise Trouble("IRL503", node.stop)
         for value in values(start, stop, step, node.down):
             self.run.step()
             place.write(Value(place.type, value))
@@ -303,8 +305,6 @@ def values(start, stop, step, down):
     slack = Fraction(step) / 10**9 if isinstance(step, float) else 0
     while True:
         value = start + sign * number * step
-        if value in BEYOND:
-            value = 2 * (start / 2 + sign * number * (step / 2))
         if value in BEYOND or sign * (Fraction(value) - Fraction(stop)) > slack:
             return
         yield value
