@@ -13,7 +13,8 @@ import pytest
 from long_run import portions
 from second_ticks import judged
 
-QUICK = range(24)
+QUICK = [*range(20), 50, 66, 72, 274]
+"""The last ones are ruled by gradients of a criterion."""
 
 pytestmark = [pytest.mark.req("TRF-01"), pytest.mark.req("TRF-02")]
 
@@ -35,6 +36,6 @@ def test_ticks_are_those_of_other_solvers():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seeds", portions(range(24, 4024), 500))
+@pytest.mark.parametrize("seeds", portions(range(4000), 500))
 def test_many_ticks_are_those_of_other_solvers(seeds):
     ends(seeds)
