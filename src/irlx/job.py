@@ -10,9 +10,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from importlib.metadata import distribution
-from math import inf
+from itertools import pairwise
+from math import inf, isfinite
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 from irlx._version import __version__
 from irlx.cell.cell import Cell
@@ -24,7 +25,7 @@ from irlx.diagnostics import IrlxError, report
 from irlx.interpreter.channels.pieces import InputGiven
 from irlx.interpreter.channels.setup import ChannelSetup
 from irlx.interpreter.interpret import MAX_STEPS
-from irlx.pacing.inputs import InputFunction, Inputs
+from irlx.pacing.inputs import InputFunction, Inputs, Trace
 from irlx.pacing.pauses import PauseFunction, Pauses, is_time
 from irlx.program import Program, ProgramError, cell_path, load
 from irlx.promises import LONGEST_TICK, SHORTEST_TICK
@@ -213,17 +214,32 @@ def _version(package: str) -> str:
 def inputs_of(cell: Cell, given: InputsGiven) -> Inputs:
     """What inputs say: first `given`, a function, traces by name or the path of a CSV; else the cell.
 
-    Raises CellError for a file that is no such CSV.
+    Raises CellError for a file that is no such CSV, IrlxError, IRL006, for what says nothing of inputs.
     """
     if callable(given):
         return Inputs(cell.inputs, given)
     if isinstance(given, str | os.PathLike):
         return Inputs({**cell.inputs, **read_input_file(Path(given))})
-    own = {
-        name.casefold(): tuple((float(at), float(value)) for at, value in trace)
-        for name, trace in (given or {}).items()
-    }
+    traces: Any = {} if given is None else given
+    if not isinstance(traces, Mapping):
+        cause = "a path, a function of name and time, or traces by name"
+        raise IrlxError(report("IRL006", option="inputs=", value=repr(given), cause=cause))
+    own = {name.casefold(): _trace(name, trace) for name, trace in traces.items()}
     return Inputs({**cell.inputs, **own})
+
+
+def _trace(name: str, given: Sequence[tuple[float, float]]) -> Trace:
+    """Times and values of an input. Raises IrlxError, IRL006."""
+    try:
+        trace = tuple((float(at), float(value)) for at, value in given)
+    except (TypeError, ValueError):
+        trace = ((inf, inf),)
+    times = [at for at, _ in trace]
+    rising = all(earlier < later for earlier, later in pairwise(times))
+    if rising and all(isfinite(value) and 0.0 <= at < inf for at, value in trace):
+        return trace
+    cause = "pairs of a time in s, 0 or more and rising, and of a value"
+    raise IrlxError(report("IRL006", option="inputs=", value=name, cause=cause))
 
 
 def _loaded(path: PathLike, cell: CellGiven) -> Program:
@@ -231,11 +247,11 @@ def _loaded(path: PathLike, cell: CellGiven) -> Program:
     try:
         return load(path, cell)
     except ProgramError as error:
-        if isinstance(cell, Cell):
-            raise
-        likely = Path(cell) if cell is not None else Path(path).with_suffix(".toml")
-        if any(found.code == "IRL201" for found in error.diagnostics) and is_file(likely):
-            load_cell(likely)
+        unknown = any(found.code == "IRL201" for found in error.diagnostics)
+        if unknown and not isinstance(cell, Cell):
+            likely = Path(cell) if cell is not None else Path(path).with_suffix(".toml")
+            if is_file(likely):
+                load_cell(likely)
         raise
 
 

@@ -53,10 +53,12 @@ def test_a_missing_program(inside, folder, names, verb):
 
 
 @pytest.mark.req("QA-09")
-def test_a_folder_is_no_program(inside):
-    done = inside("check", ".")
+@pytest.mark.parametrize("verb", ["check", "run", "blocks"])
+@pytest.mark.parametrize("path", [".", "/"])
+def test_a_folder_is_no_program(inside, verb, path):
+    done = inside(verb, path)
     assert done.returncode == 2
-    assert done.stderr == "error IRL007: . is a folder, not a file\n"
+    assert done.stderr == f"error IRL007: {path} is a folder, not a file\n"
 
 
 CELLS = [

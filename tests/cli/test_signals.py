@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -112,6 +113,23 @@ def test_values_that_python_gives(tmp_path: Path) -> None:
     np.testing.assert_allclose(times[:51], np.arange(51) * 0.01, atol=1e-7)
     run = ran(tmp_path, text, inputs={"IN_1": [(0, 0), (0.3, 1)]})
     assert outputs(run) == [(0.3, "OUT_1", True)]
+
+
+@pytest.mark.req("LANG-43")
+@pytest.mark.parametrize(
+    ("said", "words"),
+    [
+        ({"IN_1": [(1, True), (0, False)]}, "inputs= IN_1: pairs of a time in s, 0 or more and rising, and"),
+        ({"IN_1": [(-1, True)]}, "inputs= IN_1: pairs of a time"),
+        ({"IN_1": True}, "inputs= IN_1: pairs of a time"),
+        ({"IN_1": "on"}, "inputs= IN_1: pairs of a time"),
+        ({"IN_1": [(0, float("nan"))]}, "inputs= IN_1: pairs of a time"),
+        (3, "inputs= 3: a path, a function of name and time, or traces by name"),
+    ],
+)
+def test_values_of_python_that_say_nothing(tmp_path: Path, said: Any, words: str) -> None:
+    with pytest.raises(irlx.IrlxError, match=f"IRL006: {words}"):
+        ran(tmp_path, program("  lamp := go;"), inputs=said)
 
 
 @pytest.mark.req("LANG-43")
