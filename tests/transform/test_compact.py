@@ -7,7 +7,15 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from irlx.transform.compact import bounded_step, free_step, null_space_rows, path_step, within
+from irlx.transform.compact import (
+    bounded_step,
+    free_step,
+    nearly_singular,
+    null_space_rows,
+    path_step,
+    within,
+)
+from irlx.transform.orthogonal import FLAT
 from irlx.transform.qp.proxqp import ProxQpSolver
 
 pytestmark = pytest.mark.req("TRF-01")
@@ -130,3 +138,23 @@ def test_lost_rank_is_reported(making) -> None:
     problem.jacobian[3] = 0.0
     with pytest.raises(np.linalg.LinAlgError):
         free_step(problem)
+
+
+@pytest.mark.parametrize(("share", "flat"), [(0.5, True), (0.99, True), (1.01, False), (40.0, False)])
+@pytest.mark.parametrize("unit", [1.0, 1e-4])
+def test_a_row_is_nearly_a_combination_of_others_by_the_angle_to_them(
+    share: float, flat: bool, unit: float
+) -> None:
+    """The sine of the angle against FLAT, in whatever unit the row is."""
+    angle = np.arcsin(share * FLAT)
+    rows = np.array([[1.0, 0.0], [unit * np.cos(angle), unit * np.sin(angle)]])
+    gram = rows @ rows.T
+    assert nearly_singular(gram, np.linalg.cholesky(gram)) is flat
+
+
+def test_on_a_bound_is_within_it() -> None:
+    low, up = np.array([-1.0, 0.0]), np.array([2.0, 0.0])
+    assert within(low, low, up)
+    assert within(up, low, up)
+    assert not within(np.nextafter(low, -9.0), low, up)
+    assert not within(np.nextafter(up, 9.0), low, up)

@@ -127,3 +127,18 @@ def test_calm_it_does_not_push_from_end_to_end():
     assert pushes[False][0] * pushes[False][1] < 0.0
     # What other links are pushed by stays.
     assert abs(np.subtract(*pushes[True])) < 0.1 * abs(np.subtract(*pushes[False]))
+
+
+def test_each_posture_is_looked_at_anew():
+    """What was found at one posture says nothing of the next one, nor what a tick made of it."""
+    cell, kinematics = cell_of("arm7")
+    place = kinematics.tool_pose(cell.start)[1] + np.array([0.15, 0.0, 0.0])
+    ball = Obstacle("ball", (Solid(Sphere(0.05)),), Placement(tuple(place.tolist())), 0.01, 0.4)
+    distances, free = distances_of(kinematics, [ball]), np.ones(7, dtype=bool)
+    kept = KeepingClear(distances, free)
+    for turn in (0.0, 0.05, -0.1, 0.0):
+        q = cell.start + turn
+        alone = KeepingClear(distances, free)
+        np.testing.assert_array_equal(kept.linear(q, 0.05), alone.linear(q, 0.05))
+        np.testing.assert_array_equal(kept.quadratic(q), alone.quadratic(q))
+        assert kept.posture_share(q) == alone.posture_share(q)
