@@ -296,3 +296,16 @@ def test_a_coarse_flow_is_the_same_but_for_the_last_digits(arm, seed):
     assert coarse.points.shape == fine.points.shape
     np.testing.assert_allclose(coarse.points, fine.points, atol=2e-6)
     assert pose_errors(arm, q, coarse.points).max() <= ON_POSE
+
+
+@pytest.mark.req("TRF-05")
+@pytest.mark.parametrize("away", [0.3, -0.3])
+def test_a_posture_that_is_not_reached_is_not_called_so(arm7, away):
+    """Six free joints hold the pose by themselves: the flow stays, whichever side the posture lies on."""
+    free = np.ones(7, dtype=bool)
+    free[2] = False
+    flow = flow_of(arm7, arm7.q, arm7.q + away, free)
+    assert not flow.reached
+    assert len(flow.points) == 1
+    np.testing.assert_allclose(flow.remaining, away, rtol=0, atol=1e-15)
+    assert flow_of(arm7, arm7.q, arm7.q, free).reached
