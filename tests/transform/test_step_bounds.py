@@ -197,3 +197,53 @@ def test_many_rows_are_judged_as_tick_by_tick(making, seed: int) -> None:
             break
         q, speed, expected = row, step / dt, expected + 1
     assert limiter.kept(np.zeros(n), np.zeros(n), rows) == expected, f"seed {seed}"
+
+
+def fastest_towards(room: float, deceleration: float, dt: float) -> float:
+    """Largest v with v dt + (v - a dt) dt + ... down to rest within the room, tick by tick."""
+    if not np.isfinite(deceleration) or not np.isfinite(room):
+        return np.inf
+    low, high = 0.0, room / dt + deceleration * dt
+    for _ in range(200):
+        middle = 0.5 * (low + high)
+        used, speed = 0.0, middle
+        while speed > 0.0 and used <= room:
+            used, speed = used + speed * dt, speed - deceleration * dt
+        low, high = (middle, high) if used <= room else (low, middle)
+    return low
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_bounds_beside_position_limits_are_those_of_braking_ticks(making, seed: int) -> None:
+    """Next to a limit, far from it, at every speed and with decelerations of any size, on both sides."""
+    rng = np.random.default_rng(seed)
+    n, dt = 6, float(rng.choice([0.001, 0.01, 0.05]))
+    v, a = rng.uniform(0.2, 2.0, n), rng.choice([0.3, 0.8, 5.0, 40.0], n)
+    limits = making.limits(n, 1.0, v, a)
+    limiter = making.limiter(limits, dt, reserve=0.0)
+    for sign in (1.0, -1.0):
+        room = rng.uniform(0.0, 1.4, n) * rng.choice([1e-4, 0.1, 1.0], n) * (v**2 / (2.0 * a) + v * dt)
+        q = sign * (1.0 - np.minimum(room, 1.0))
+        bounds = limiter.bounds(q, np.zeros(n))
+        most = np.array(
+            [min(v[j], a[j] * dt, fastest_towards(1.0 - sign * q[j], a[j], dt)) * dt for j in range(n)]
+        )
+        towards = bounds.upper if sign > 0 else -bounds.lower
+        away = -bounds.lower if sign > 0 else bounds.upper
+        np.testing.assert_allclose(towards, most, rtol=1e-9, atol=1e-13)
+        # From the other limit it is far enough to go as fast as the acceleration lets it.
+        np.testing.assert_allclose(away, np.minimum(v, a * dt) * dt, rtol=1e-9)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_rows_that_lack_the_room_to_brake_are_not_kept(making, sign: float) -> None:
+    """At 0.5 per s and 1 per s2 a joint needs 0.125 and a tick: until there such rows are kept."""
+    limits = making.limits(2, 1.0, 0.5, 1.0)
+    limiter = making.limiter(limits, 0.01)
+    q = np.array([sign * 0.8, 0.0])
+    steps = np.tile([sign * 0.00499, 0.0], (30, 1))
+    rows = q + np.cumsum(steps, axis=0)
+    room = 1.0 - sign * np.concatenate([[q[0]], rows[:-1, 0]])
+    wanted = [fastest_towards(one, 1.0, 0.01) >= 0.499 * (1 + 1e-6) for one in room].index(False)
+    assert 10 < wanted < 20
+    assert limiter.kept(q, np.array([sign * 0.499, 0.0]), rows) == wanted

@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 from irlx.transform.criteria.least_motion import LeastMotion
 from irlx.transform.criteria.posture import Posture
 from irlx.transform.tick import TickStatus
+from irlx.transform.tick_problem import TickProblem, build_tick
 
 
 def random_target(arm, rng: np.random.Generator, size: float):
@@ -238,3 +239,18 @@ def test_criterion_derivatives_equal_finite_differences(arm, make) -> None:
         assert gradient[joint] == pytest.approx(slope, abs=1e-7)
         bend = (criterion.gradient(arm.q, step + e) - criterion.gradient(arm.q, step - e)) / (2 * h)
         np.testing.assert_allclose(bend, np.diag(criterion.hessian())[joint], atol=1e-6)
+
+
+def test_a_problem_begins_where_the_tick_does(arm) -> None:
+    """Without a step so far it is that of no step; with one, bounds and gradient are those that are left."""
+    bounds = arm.bounds(0.1)
+    free, criterion = np.ones(arm.n, dtype=bool), LeastMotion(arm.weights)
+    problem = TickProblem(arm.pose(arm.q + 0.01), arm.q, bounds, criterion, free)
+    begun, same = build_tick(arm.kinematics, problem), build_tick(arm.kinematics, problem, np.zeros(arm.n))
+    for name in ("jacobian", "twist", "gradient", "hessian", "lower", "upper"):
+        np.testing.assert_array_equal(getattr(begun, name), getattr(same, name))
+    step = np.full(arm.n, 0.004)
+    further = build_tick(arm.kinematics, problem, step)
+    np.testing.assert_array_equal(further.lower, bounds.lower - step)
+    np.testing.assert_array_equal(further.upper, bounds.upper - step)
+    np.testing.assert_array_equal(further.gradient, arm.weights * step)
