@@ -76,9 +76,7 @@ def test_a_few_steps_of_the_same_small_size_are_enough() -> None:
 def test_a_pose_is_met_by_the_lengths_of_both_parts(at, angles, met: bool) -> None:
     """In units of the tolerances, a little less where one stands exactly on them."""
     shrunk = 1.0 - 1e-12
-    left = shrunk * np.concatenate(
-        [POSITION_TOLERANCE * np.array(at), ORIENTATION_TOLERANCE * np.array(angles)]
-    )
+    parts = POSITION_TOLERANCE * np.array(at), ORIENTATION_TOLERANCE * np.array(angles)
     assert is_met(shrunk * np.concatenate(parts), 3) is met
 
 
