@@ -135,6 +135,10 @@ def test_joints_without_speed_limit_need_time(kit) -> None:
     planned = plan_joint_line(np.zeros(4), end, kit.law(duration=2.0), bounds, NAMES, 0.01, kit.place)
     assert planned.ticks == 200
     np.testing.assert_array_equal(planned.postures(0.01)[-1], end)
+    # A quarter of the time each to rise and to fall, 4/3 of the mean rate between.
+    way, rate = planned.law.evaluate(np.array([0.25, 0.5, 1.0, 1.5, 2.0]))
+    np.testing.assert_allclose(way, [1 / 24, 1 / 6, 1 / 2, 5 / 6, 1.0], rtol=1e-9)
+    np.testing.assert_allclose(rate, [1 / 3, 2 / 3, 2 / 3, 2 / 3, 0.0], rtol=1e-9, atol=1e-12)
 
 
 @pytest.mark.parametrize("bounds", [limits(0.0), limits(1.0, 0.0)], ids=["speed", "acceleration"])
@@ -164,3 +168,12 @@ def test_a_way_of_rounding_size_ends_exactly(kit, dt: float) -> None:
     planned = plan_joint_line(start, end, kit.law(), limits(1.0, 10.0), NAMES, dt, kit.place)
     assert planned.ticks == 1
     np.testing.assert_array_equal(planned.postures(dt), end[None])
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_an_acceleration_limit_rules_where_no_speed_limit_is_known(kit, sign: float) -> None:
+    """Half the way up, half the way down: 2 sqrt(way / acc), whichever way the joint goes."""
+    bounds = limits([np.inf] * 4, [np.inf, 2.0, np.inf, np.inf])
+    end = np.array([0.0, sign * 0.5, 0.0, 0.0])
+    planned = plan_joint_line(np.zeros(4), end, kit.law(), bounds, NAMES, 1e-4, kit.place)
+    assert planned.ticks * 1e-4 == pytest.approx(2.0 * np.sqrt(0.5 / 2.0), abs=3e-4)

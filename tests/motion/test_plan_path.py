@@ -260,3 +260,10 @@ def test_an_arc_beyond_all_numbers_takes_too_long(kit) -> None:
     with pytest.raises(MotionError) as caught:
         plan_arc(kit, 1e300)
     assert caught.value.reason.code == "IRL425"
+
+
+@pytest.mark.parametrize("law", [{"speed": 1e-120}, {"acc": 1e-120}, {"speed_ori": 1e-120}])
+def test_a_speed_of_next_to_nothing_takes_too_long(kit, law: dict[str, float]) -> None:
+    with pytest.raises(MotionError) as caught:
+        plan(kit, (0.1, 0.0, 0.0), (0.3, 0.0, 0.0), **law)
+    assert caught.value.reason.code == "IRL425"
