@@ -1,0 +1,1 @@
+"""Random valid programs with random robots and cells, for `motions.py`: drawing, judging, making smaller."""
