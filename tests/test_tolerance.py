@@ -212,6 +212,37 @@ def test_what_closes_the_way_names_the_band(run) -> None:
         run(f"FREEZESTART 4;\n{square('WITH TOLERANCE (0, 0, 0, 3, 3, 0)')}FREEZEEND;\n")
 
 
+FREE = {
+    "one": 'task = ["x", "y", "z", "rx", "ry"]\nfree = ["rz"]',
+    "all": 'task = ["x", "y", "z"]\nfree = ["rx", "ry", "rz"]',
+}
+
+
+def free_cell(kind: str) -> str:
+    return f'[robot]\nmodel = "arm7"\n{FREE[kind]}\n[motion]\ntick_ms = 20\n'
+
+
+@pytest.mark.parametrize("kind", FREE)
+def test_bands_lie_along_the_programmed_pose_however_the_tool_turns_freely(run, kind: str) -> None:
+    """A line to the side with 4 mm along x of the pose that the start has: nothing is left in y and z."""
+    found = run("MOVE_INC LIN POSITION(0, 80, 0) WITH TOLERANCE (4, 0, 0, 0, 0, 0);\n", free_cell(kind))
+    position, rotation = tool(run, found)
+    assert np.degrees(Rotation.from_matrix(rotation[0].T @ rotation[-1]).magnitude()) > 0.3
+    off = (position - position[0]) @ rotation[0]
+    along, aside = rotation[0].T @ [0.0, 1.0, 0.0], np.array([1.0, 0.0, 0.0])
+    left = off @ np.cross(along, aside)
+    assert np.abs(left).max() < 1e-8
+    assert np.abs(off[-1] - 0.08 * along)[1:].max() < 1e-8
+
+
+@pytest.mark.parametrize("kind", FREE)
+def test_a_move_behind_bands_of_turns_begins_where_the_tool_stands(run, kind: str) -> None:
+    turned = "MOVE_INC LIN POSE(POSITION(0, 40, 0), ORIXYZ(10, 0, 0)) WITH TOLERANCE (0, 0, 0, 0, 2, 0);\n"
+    found = run(turned + "MOVE_INC LIN POSITION(0, 40, 0);\n", free_cell(kind))
+    assert found.complete
+    assert found.summary.moves == 2
+
+
 def narrower(stream: JointStream, part: int) -> JointStream:
     """A stream whose moves were asked for nine tenths of a band."""
 

@@ -64,6 +64,7 @@ from irlx.pacing.situation import PacingSetup, Situation
 from irlx.pacing.snap import snapped
 from irlx.pacing.spare import check_spare
 from irlx.pacing.switches import check_frozen, check_inside, check_limit
+from irlx.pacing.tolerance import lets_turn
 from irlx.pacing.too_near import check_rows, passed_by, standing
 from irlx.pacing.waiting import waited
 from irlx.transform.clearance import Clearance
@@ -353,7 +354,8 @@ class Pacer:
             check_spare(situation.options, kinematics, block.tolerance, self.locate)
             motion = move_along_path(situation, moves, in_force)
         self._programmed, self._programmed_in = motion.programmed, block.frame
-        return motion
+        # Turned within bands, the tool is not as it was asked to be: what follows begins where it stands.
+        return replace(motion, asked=None) if lets_turn(block.tolerance, situation.kinematics) else motion
 
     def _tell_begin(self, block: Block) -> None:
         if self._setup.watch is not None:

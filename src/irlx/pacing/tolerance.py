@@ -108,7 +108,10 @@ def widened(
     bands = freed_coordinates(clause, kinematics)
     if clause is None or not bands:
         return Widened(situation, in_force, asked)
-    wide = _kinematics(kinematics, bands)
+    bands = _with_free_turns(bands, kinematics)
+    begin, end = way
+    seat = _seat(situation, begin)
+    wide = _kinematics(kinematics, bands, seat)
     names = wide.description.joint_names
     real = np.array([names.index(name) for name in kinematics.description.joint_names])
     virtual = {number: names.index(_joint_name(number)) for number in bands}
@@ -119,13 +122,13 @@ def widened(
         """A posture (n,) with the virtual joints as they are then, inside their bands."""
         found = np.empty(wide.joints)
         found[real] = q
-        stands = standing_off(programmed, kinematics.tool_pose(q), clause, kinematics)
+        rotation, position = kinematics.tool_pose(q)
+        stands = standing_off(programmed, (rotation @ seat, position), clause, kinematics)
         for number, place in virtual.items():
             band = limits.position_upper[place]
             found[place] = min(max(stands.values[number], -band), band)
         return found
 
-    begin, end = way
     setup, options = situation.setup, situation.options
     numbers = tuple(int(real[number - 1]) + 1 for number in options.frozen)
     cyclic = None if options.cyclic_posture is None else posture(options.cyclic_posture, end)
@@ -206,15 +209,47 @@ def freed_coordinates(clause: ToleranceClause | None, kinematics: Kinematics) ->
     }
 
 
+def lets_turn(clause: ToleranceClause | None, kinematics: Kinematics) -> bool:
+    """Whether bands leave turns open that the robot is asked for."""
+    return any(number >= 3 for number in freed_coordinates(clause, kinematics))
+
+
+def _with_free_turns(bands: dict[int, float], kinematics: Kinematics) -> dict[int, float]:
+    """The bands with those turns that the robot's task leaves free, which are bands without end.
+
+    So the bands lie along the axes of the programmed pose, however the tool is turned about them. Of two free
+    turns beside one that is asked for that is another turn than the task's, which stays as it is.
+    """
+    robot = kinematics.description
+    if robot.task_frame is not None or (
+        len(robot.free) == 2 and kinematics.task.size > kinematics.task.linear
+    ):
+        return bands
+    every = bands | {COORDINATES.index(name): FREE_TURN for name in robot.free}
+    return {number: every[number] for number in _BEHIND_TOOL if number in every}
+
+
+def _seat(situation: Situation, begin: Pose) -> Array:
+    """Rotation (3, 3) behind the tool from which the virtual turns count.
+
+    Where all turns are free they begin at 0: how the tool is turned tells nothing, and far from there a turn
+    about y would bring the other two into line.
+    """
+    if situation.kinematics.task.size > situation.kinematics.task.linear:
+        return np.eye(3)
+    return np.asarray(situation.kinematics.tool_pose(situation.q)[0].T @ begin[0])
+
+
 def _joint_name(number: int) -> str:
     return f"TOLERANCE {_NAMES[number]}"
 
 
-def _kinematics(kinematics: Kinematics, bands: dict[int, float]) -> Kinematics:
-    """The robot with a joint for each band behind the tool; its tip is where the programmed pose is."""
+def _kinematics(kinematics: Kinematics, bands: dict[int, float], seat: Array) -> Kinematics:
+    """The robot with a joint for each band behind the tool, turned by `seat` (3, 3); its tip is where the
+    programmed pose is."""
     robot, tool = kinematics.description, kinematics.tool
     x, y, z = (float(value) for value in tool.translation)
-    a, b, c = (float(value) for value in pin.rpy.matrixToRpy(tool.rotation))
+    a, b, c = (float(value) for value in pin.rpy.matrixToRpy(tool.rotation @ seat))
     joints = [Joint("TOLERANCE tool", JointKind.FIXED, robot.tip, "TOLERANCE tool", (x, y, z), (a, b, c))]
     for number in bands:
         back = [0.0, 0.0, 0.0]
@@ -223,7 +258,9 @@ def _kinematics(kinematics: Kinematics, bands: dict[int, float]) -> Kinematics:
         name = _joint_name(number)
         axis = (back[0], back[1], back[2])
         joints.append(Joint(name, kind, joints[-1].child, name, axis=axis))
-    wide = replace(robot, joints=(*robot.joints, *joints), tip=joints[-1].child)
+    asked = tuple(name for k, name in enumerate(COORDINATES) if name in robot.coordinates or k in bands)
+    free = tuple(name for name in robot.free if name not in asked)
+    wide = replace(robot, joints=(*robot.joints, *joints), tip=joints[-1].child, coordinates=asked, free=free)
     # What the exact pose would imply is a condition of its own where the pose has room.
     conditions = (*kinematics.constraints, *kinematics.implied)
     found = Kinematics(wide, [VirtualConstraint(item, _real(wide, robot)) for item in conditions])

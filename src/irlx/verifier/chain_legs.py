@@ -9,7 +9,7 @@ import numpy as np
 
 from irlx.blocks import Blend, MoveKind
 from irlx.streams.joint_stream import Floats, Integers
-from irlx.verifier.demands import Demand, allowance_of
+from irlx.verifier.demands import Demand
 from irlx.verifier.geometry.arcs import arc_shape
 from irlx.verifier.geometry.chains import Leg
 from irlx.verifier.geometry.corners import Corner
@@ -93,7 +93,7 @@ def end_reach(demand: Demand) -> float:
 def _curves(demand: Demand) -> list[Curve]:
     """The curves of one move."""
     block = demand.move.block
-    if allowance_of(block).shifts:
+    if demand.allowance.shifts:
         raise Unplaced("displacements WITH TOLERANCE along their PATH are not judged")
     poses = [place.pose for place in (demand.start, *demand.targets) if place.pose is not None]
     if len(poses) < len(demand.targets) + 1:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
+from math import pi
 
 import numpy as np
 
@@ -27,7 +28,7 @@ from irlx.verifier.geometry.allowance import EXACT, Allowance
 from irlx.verifier.geometry.arcs import arc_shape
 from irlx.verifier.geometry.forward import forward
 from irlx.verifier.geometry.rotations import angle_between, from_quaternion
-from irlx.verifier.geometry.task_turns import TaskTurns, turned_off
+from irlx.verifier.geometry.task_turns import TURNS, TaskTurns, turned_off
 from irlx.verifier.moves import MoveRows
 from irlx.verifier.outline import Outline
 from irlx.verifier.tools import Pose, ToolsInForce
@@ -59,6 +60,7 @@ class Demand:
     passes: bool
     follows: bool
     crosses: tuple[bool, bool] = (False, False)
+    allowance: Allowance = EXACT
 
     @property
     def gives_orientation(self) -> bool:
@@ -94,12 +96,20 @@ class Placer:
 
     def going_on(self, stands: Place, before: Demand, block: int) -> Place:
         """Where a block begins behind a move: where not all turns count with the orientation that was asked
-        for there last, unless the tool is another one since."""
+        for there last, unless the tool is another one since or bands have let it be turned."""
         asked = before.end.pose
         same = self.tools.number(block) == self.tools.number(before.move.block.id)
-        if self.turns is None or stands.pose is None or asked is None or not same:
+        if self.turns is None or stands.pose is None or asked is None or not same or self.turned_by(before):
             return stands
         return Place((stands.pose[0], asked[1]), stands.posture)
+
+    def turned_by(self, demand: Demand) -> bool:
+        """Whether bands of a move leave turns open that the robot is asked for."""
+        clause, robot = demand.move.block.tolerance, self.robot
+        if clause is None or robot is None:
+            return False
+        turns = zip(TURNS, clause.bands[3:], strict=True)
+        return any(band > 0.0 and name in robot.coordinates for name, band in turns)
 
     def of_posture(self, q: Floats, block: int) -> Pose | None:
         """Pose of the tool of a block in posture q (n,)."""
@@ -176,23 +186,39 @@ def demands_of(outline: Outline, moves: list[MoveRows], placer: Placer) -> list[
         if found and not follows:
             start = placer.going_on(start, found[-1], move.block.id)
         if found:
-            start = _goes_on(found[-1], move, start, placer.tools)
+            start = _goes_on(found[-1], move, start, placer)
         targets = placer.all_of(move, start)
         end = placer.end(move, start, targets)
         passes = move.block.id in joinable and not _stands(outline, move, end, ends)
-        found.append(Demand(move, start, targets, end, passes, follows))
+        allowance = allowance_of(move.block, placer.robot)
+        found.append(Demand(move, start, targets, end, passes, follows, allowance=allowance))
     return _crossing(found)
 
 
-def allowance_of(block: MoveBlock) -> Allowance:
-    """How far the tool may stand off the pose that a move asks for."""
-    return EXACT if block.tolerance is None else Allowance(block.tolerance.bands)
+def allowance_of(block: MoveBlock, robot: RobotDescription | None) -> Allowance:
+    """How far the tool may stand off the pose that a move asks for.
+
+    Beside bands turns that nobody asks the robot for are bands without end: one of them, or all.
+    """
+    if block.tolerance is None:
+        return EXACT
+    bands, free = list(block.tolerance.bands), () if robot is None else robot.free
+    if robot is not None and robot.task_frame is None and (len(free) != 2 or not _asks_turn(robot)):
+        for name in free:
+            bands[3 + TURNS.index(name)] = pi
+    dx, dy, dz, da, db, dc = bands
+    return Allowance((dx, dy, dz, da, db, dc))
 
 
-def _goes_on(before: Demand, move: MoveRows, start: Place, tools: ToolsInForce) -> Place:
+def _asks_turn(robot: RobotDescription) -> bool:
+    return any(name in robot.coordinates for name in TURNS)
+
+
+def _goes_on(before: Demand, move: MoveRows, start: Place, placer: Placer) -> Place:
     """Where the path of a move starts: WITH TOLERANCE where that of the move before WITH TOLERANCE ended,
     with the same tool and if that stands within the bands about it, else where the tool is."""
-    asked, end, here = allowance_of(move.block), before.end.pose, start.pose
+    asked, end, here = allowance_of(move.block, placer.robot), before.end.pose, start.pose
+    tools = placer.tools
     if asked is EXACT or before.move.block.tolerance is None or end is None or here is None:
         return start
     if tools.number(before.move.block.id) != tools.number(move.block.id):

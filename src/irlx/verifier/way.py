@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from irlx.blocks import ArcCourse, MoveKind, Profile
-from irlx.verifier.demands import Place, allowance_of
+from irlx.verifier.demands import Place
 from irlx.verifier.evidence import Evidence
 from irlx.verifier.geometry.arcs import ArcWay, arc_shape
 from irlx.verifier.geometry.paths import LineWay
@@ -69,7 +69,8 @@ class Course:
 
 def course_of(evidence: Evidence, move: MoveRows, start: Pose) -> Course:
     """The course of a move from a pose of the tool; where not all turns count, as that was asked for."""
-    begins = evidence.demands[move.block.id].start.pose
+    demand = evidence.demands[move.block.id]
+    begins = demand.start.pose
     if evidence.placer.turns is not None and begins is not None:
         start = start[0], begins[1]
     places = evidence.placer.all_of(move, Place(start, evidence.posture(move.start)))
@@ -81,7 +82,7 @@ def course_of(evidence: Evidence, move: MoveRows, start: Pose) -> Course:
         return Course(move, None, target)
     course = move.block.arc
     if course is None:
-        return Course(move, LineWay(start, target, allowance_of(move.block)), target)
+        return Course(move, LineWay(start, target, demand.allowance), target)
     return _arc(evidence, move, course, (start, poses[0], target))
 
 
@@ -93,7 +94,9 @@ def _arc(evidence: Evidence, move: MoveRows, course: ArcCourse, poses: tuple[Pos
     goal = target if course.angle is None else (shape.end, target[1])
     found = Course(move, None, goal, shape.flatness)
     most_step = found.speed * shape.flatness * evidence.outline.header.dt
-    way = ArcWay(shape, course, (start[1], via[1], goal[1]), most_step, allowance_of(move.block))
+    way = ArcWay(
+        shape, course, (start[1], via[1], goal[1]), most_step, evidence.demands[move.block.id].allowance
+    )
     return Course(move, way, goal, shape.flatness)
 
 

@@ -49,7 +49,7 @@ def _finding(files: dict[str, str], seed: int) -> str:
     with TemporaryDirectory() as folder:
         for name, text in files.items():
             (Path(folder) / name).write_text(text, encoding="utf-8")
-        return judged(Path(folder), seed).finding
+        return judged(Path(folder), seed, False).finding
 
 
 def _without_files(files: dict[str, str], shows: Callable[[dict[str, str]], bool]) -> dict[str, str]:

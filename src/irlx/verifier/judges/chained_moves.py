@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from irlx.promises import FOLLOWED_TURN, PATH_ORIENTATION, PATH_POSITION, PATH_STEP, PROGRAM_EXCESS
 from irlx.streams.joint_stream import Floats, Integers
 from irlx.verifier.chain_legs import ChainLegs, end_reach
-from irlx.verifier.demands import Demand, allowance_of
+from irlx.verifier.demands import Demand
 from irlx.verifier.findings.tally import Tally
 from irlx.verifier.geometry.chains import ChainWay, Placed
 from irlx.verifier.geometry.rotations import angle_between
@@ -83,7 +83,7 @@ class ChainRows:
     ) -> None:
         self._chain, self._legs, self._tallies, self._dt = chain, legs, tallies, dt
         # Moves that are joined have none.
-        self._allowance = allowance_of(chain[0].move.block)
+        self._allowance = chain[0].allowance
         reach = REACH * float(np.max(legs.speed)) * dt
         self._way = ChainWay(list(legs.legs), reach, self._allowance)
         start = chain[0].start.pose

@@ -20,7 +20,7 @@ from irlx.promises import (
 )
 from irlx.streams.joint_stream import Floats, Integers
 from irlx.verifier.chain_legs import NoCurve, Unplaced, legs_of
-from irlx.verifier.demands import Demand, allowance_of
+from irlx.verifier.demands import Demand
 from irlx.verifier.evidence import Evidence
 from irlx.verifier.findings.finding import Check
 from irlx.verifier.geometry.allowance import EXACT, Allowance
@@ -144,7 +144,7 @@ class ToolMoveChecks:
             if not any(demand.crosses):
                 self._add_joint_rates(rows, stretch, move)
         elif course.way is not None:
-            allowance, wanted = allowance_of(move.block), None
+            allowance, wanted = demand.allowance, None
             if allowance.hides(course.way):
                 self._add_shifted(rows, stretch, course, allowance)
             else:
@@ -171,7 +171,7 @@ class ToolMoveChecks:
             self._skipped[move.block.id] = _OTHER_FRAME
             return
         row = np.array([move.last])
-        allowance = allowance_of(move.block)
+        allowance = demand.allowance
         # In the frame of the goal, where there is anything to allow.
         apart = (reached[0] - goal[0])[None]
         left = allowance.shifted_off(apart @ goal[1]) if allowance.shifts else apart
