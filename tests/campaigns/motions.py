@@ -170,17 +170,18 @@ def main() -> int:
         return one_program(given)
     first = 1_000_000 * given.seed if given.from_seed is None else given.from_seed
     print(f"programs from seed {first}", flush=True)
-    tally, told = Tally(), 0.0
+    tally, shown = Tally(), 0.0
     running = outcomes(first, given.processes)
     for outcome in running:
         tally.add(outcome)
         verdict = outcome.verdict
         if given.refusals and verdict.code:
-            print(f"{verdict.code} seed {outcome.seed} {outcome.robot}: {verdict.message}\n   {outcome.statement[:300]}")
+            told = f"{verdict.code} seed {outcome.seed} {outcome.robot}: {verdict.message}"
+            print(f"{told}\n   {outcome.statement[:300]}", flush=True)
         if verdict.finding:
             print(f"FINDING seed {outcome.seed} ({outcome.robot}) {verdict.code}: {verdict.finding[:2000]}", flush=True)
-        if tally.time - told > 60.0:
-            told = tally.time
+        if tally.time - shown > 60.0:
+            shown = tally.time
             print(f"until seed {outcome.seed}: {tally.line()}", flush=True)
         if tally.motions >= given.motions:
             running.close()
