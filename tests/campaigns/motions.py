@@ -3,12 +3,12 @@
     python tests/campaigns/motions.py --motions 100000 --seed 0 --processes 2
     python tests/campaigns/motions.py --from-seed 4711 --motions 5000   # on from where another one stopped
     python tests/campaigns/motions.py --only 4711                      # one program, everything said of it
-    python tests/campaigns/motions.py --only 4711 --keep NAME          # a finding, made smaller, into the corpus
+    python tests/campaigns/motions.py --only 4711 --keep NAME        # a finding, made smaller, to the corpus
 
-A program is drawn from its seed alone: one of many kinds of robot with 3 to 12 joints in a cell, and a program
-that uses the language and the options of redundancy in any order, with zeros, residues of rounding and states
-on limits mixed in. Each is either carried out, and everything about it verified, or refused with a code at its
-place. Anything else is a finding.
+A program is drawn from its seed alone: one of many kinds of robot with 3 to 12 joints in a cell, and a
+program that uses the language and the options of redundancy in any order, with zeros, residues of rounding
+and states on limits mixed in. Each is either carried out, and everything about it verified, or refused with a
+code at its place. Anything else is a finding.
 """
 
 from __future__ import annotations
@@ -85,7 +85,9 @@ class Tally:
         refused = ", ".join(f"{code} {n}" for code, n in self.refused.most_common())
         share = 100.0 * self.refused.total() / max(self.programs, 1)
         found = Counter(outcome.verdict.finding.split(":")[0] for outcome in self.findings)
-        seeds = [f"  seed {o.seed} ({o.robot}): {o.verdict.finding.splitlines()[0][:160]}" for o in self.findings]
+        seeds = [
+            f"  seed {o.seed} ({o.robot}): {o.verdict.finding.splitlines()[0][:160]}" for o in self.findings
+        ]
         return "\n".join(
             [
                 self.line(),
@@ -99,7 +101,9 @@ class Tally:
     def table(self) -> str:
         """How often everything was written and executed."""
         parts = (("written", self.noted), ("executed", self.executed))
-        return "\n".join(f"{head:9} {n:8}  {word}" for head, words in parts for word, n in sorted(words.items()))
+        return "\n".join(
+            f"{head:9} {n:8}  {word}" for head, words in parts for word, n in sorted(words.items())
+        )
 
 
 def outcome_of(seed: int, full: bool = False, kind: str | None = None) -> Outcome:
@@ -129,16 +133,22 @@ def outcomes(first: int, processes: int) -> Iterator[Outcome]:
         seeds, waiting = count(first), []
         try:
             while True:
-                waiting += [pool.submit(outcome_of, seed) for seed in islice(seeds, 4 * processes - len(waiting))]
+                waiting += [
+                    pool.submit(outcome_of, seed) for seed in islice(seeds, 4 * processes - len(waiting))
+                ]
                 yield waiting.pop(0).result()
         finally:
             pool.shutdown(cancel_futures=True)
 
 
 def arguments() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--motions", type=int, default=100_000, help="executed motions to come to (100000)")
-    parser.add_argument("--seed", type=int, default=0, help="the campaign: programs begin at 1,000,000 times it")
+    parser.add_argument(
+        "--seed", type=int, default=0, help="the campaign: programs begin at 1,000,000 times it"
+    )
     parser.add_argument("--from-seed", type=int, help="the first program instead, to go on with a campaign")
     parser.add_argument("--processes", type=int, default=1)
     parser.add_argument("--only", type=int, metavar="SEED", help="one program, judged in full")
@@ -179,7 +189,10 @@ def main() -> int:
             told = f"{verdict.code} seed {outcome.seed} {outcome.robot}: {verdict.message}"
             print(f"{told}\n   {outcome.statement[:300]}", flush=True)
         if verdict.finding:
-            print(f"FINDING seed {outcome.seed} ({outcome.robot}) {verdict.code}: {verdict.finding[:2000]}", flush=True)
+            print(
+                f"FINDING seed {outcome.seed} ({outcome.robot}) {verdict.code}: {verdict.finding[:2000]}",
+                flush=True,
+            )
         if tally.time - shown > 60.0:
             shown = tally.time
             print(f"until seed {outcome.seed}: {tally.line()}", flush=True)

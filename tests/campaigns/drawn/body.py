@@ -96,7 +96,7 @@ class Body:
         return np.clip(q * self.units, *self.bounds)
 
     def inside(self, q: np.ndarray) -> np.ndarray:
-        """Joint values within the limits, and as the condition of the cell asks for where the limits allow it."""
+        """Joint values within the limits, and as the condition of the cell asks for where they allow it."""
         lower, upper = self.cell.limits.pair("position")
         q = np.clip(q, lower, upper)
         if self.relation is not None:

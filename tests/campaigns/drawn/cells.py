@@ -36,7 +36,9 @@ class CellDrawing:
         self.rng, self.robot = rng, robot
         self.special: set[str] = set()
         self.plain = loaded(robot, self.table([]))
-        self.units = np.array([1e3 if axis.is_prismatic else np.degrees(1.0) for axis in self.plain.robot.axes])
+        self.units = np.array(
+            [1e3 if axis.is_prismatic else np.degrees(1.0) for axis in self.plain.robot.axes]
+        )
         self.kinematics = Kinematics(self.plain.robot)
         self.tick = float(rng.choice(TICKS))
         self.span = min(1e-3 * float(rng.choice(TICKS_A_MOVE)) * self.tick, LONGEST_SPAN)
@@ -86,11 +88,11 @@ class CellDrawing:
         lower, upper = (side * self.units for side in own.pair("position"))
         self.bounds = lower * (1 - 1e-12 * np.sign(lower)), upper * (1 - 1e-12 * np.sign(upper))
         if rng.random() < 0.5:
-            low = np.maximum(start - rng.uniform(0.4, 2.5, n) * self.units, lower)
-            high = np.minimum(start + rng.uniform(0.4, 2.5, n) * self.units, upper)
-            if rng.random() < 0.3:
+            low = np.maximum(start - rng.uniform(0.6, 2.5, n) * self.units, lower)
+            high = np.minimum(start + rng.uniform(0.6, 2.5, n) * self.units, upper)
+            if rng.random() < 0.2:
                 self.special.add("start on a limit")
-                on = rng.random(n) < 0.3
+                on = rng.random(n) < 0.2
                 side = rng.random(n) < 0.5
                 low, high = np.where(on & side, start, low), np.where(on & ~side, start, high)
             self.bounds = low, high
@@ -99,7 +101,7 @@ class CellDrawing:
         kind = str(rng.choice(["own", "drawn", "speed", "none"], p=[0.25, 0.45, 0.2, 0.1]))
         if kind == "own" and not np.isfinite(own.speed_upper).all():
             kind = "speed"
-        self.special.add(f"{kind} limits")
+        self.special.add("no limits" if kind == "none" else f"{kind} limits")
         if kind == "own":
             return lines
         typical = self.speed / self.robot.size
@@ -107,7 +109,7 @@ class CellDrawing:
         ease = 1.0 if rng.random() < 0.25 else 5.0
         speed = ease * np.minimum(typical * rng.uniform(1.0, 8.0, n), 4.0) * slide
         self.special.add("tight limits" if ease == 1.0 else "wide limits")
-        if rng.random() < 0.06:
+        if rng.random() < 0.04:
             self.special.add("speed limit 0")
             speed[int(rng.integers(n))] = 0.0
         if kind == "none":
@@ -117,7 +119,9 @@ class CellDrawing:
         if kind == "drawn":
             acceleration = (speed + 0.01) * rng.uniform(4.0, 20.0, n) / self.span
             sides = zip(acceleration * self.units, rng.uniform(0.6, 1.0, n), strict=True)
-            lines.append(f"acceleration = [{', '.join(f'[{number(-a * b)}, {number(a)}]' for a, b in sides)}]")
+            lines.append(
+                f"acceleration = [{', '.join(f'[{number(-a * b)}, {number(a)}]' for a, b in sides)}]"
+            )
         else:
             lines.append("acceleration = false")
         return lines
@@ -152,14 +156,21 @@ class CellDrawing:
         lines = ["[frames]", f"fixture = {{ xyz = [{join(place)}], rpy = [{join(turn)}] }}"]
         if self.robot.hand:
             self.hand_frame = "grip"
-            lines.append(f'grip = {{ link = "{self.robot.hand}", xyz = [0.0, 20.0, 50.0], rpy = [-90.0, 0.0, 0.0] }}')
+            lines.append(
+                f'grip = {{ link = "{self.robot.hand}", xyz = [0.0, 20.0, 50.0], rpy = [-90.0, 0.0, 0.0] }}'
+            )
         return lines
 
     def condition(self) -> list[str]:
         """Now and then a relation between two joints that the start keeps."""
         rng, n = self.rng, len(self.units)
         turning = np.flatnonzero(self.units < 1e3)
-        if n - len(self.plain.robot.coordinates) < 2 or len(turning) < 3 or rng.random() > 0.12 or self.robot.hand:
+        if (
+            n - len(self.plain.robot.coordinates) < 2
+            or len(turning) < 3
+            or rng.random() > 0.12
+            or self.robot.hand
+        ):
             return []
         self.special.add("relation of joints")
         pair = rng.choice(turning, 2, replace=False)
@@ -205,8 +216,17 @@ class CellDrawing:
                 first, last = f"time = 0.0, xyz = [{join(1e3 * place)}]", f"time = 2.0, xyz = [{join(there)}]"
                 where = f"trajectory = [{{ {first} }}, {{ {last} }}]"
             margin = float(rng.choice([0.0, 5.0, 15.0])) * size
-            lines = ["[[obstacle]]", f'name = "o{k}"', f'shape = "{shape}"', *([sizes] if sizes else []), where]
-            lines += [f"margin = {number(margin)}", f"influence = {number(margin + 1e3 * size * rng.uniform(0.03, 0.2))}"]
+            lines = [
+                "[[obstacle]]",
+                f'name = "o{k}"',
+                f'shape = "{shape}"',
+                *([sizes] if sizes else []),
+                where,
+            ]
+            lines += [
+                f"margin = {number(margin)}",
+                f"influence = {number(margin + 1e3 * size * rng.uniform(0.03, 0.2))}",
+            ]
             found.append("\n".join(lines))
         return found
 

@@ -27,26 +27,26 @@ class Goals:
         spread = body.spread if spread is None else spread
         q = body.start + spread * rng.normal(size=body.n)
         chosen = rng.random()
-        if chosen < 0.08:
+        if chosen < 0.02:
             script.note("goal: huge")
             q = body.start + rng.uniform(-0.8, 0.8, body.n)
-        elif chosen < 0.14:
+        elif chosen < 0.1:
             script.note("goal: some joints stay")
             q = np.where(rng.random(body.n) < 0.6, body.start, q)
-        elif chosen < 0.2:
+        elif chosen < 0.14:
             script.note("goal: on a limit")
             lower, upper = body.cell.limits.pair("position")
             joint = int(rng.integers(body.n))
             side = lower[joint] if rng.random() < 0.5 else upper[joint]
             if abs(side - body.start[joint]) < 0.6:
                 q[joint] = side
-        elif chosen < 0.24:
+        elif chosen < 0.18:
             script.note("goal: joints at zero")
             q[(np.abs(body.start) < 0.3) & (rng.random(body.n) < 0.5)] = 0.0
-        elif chosen < 0.28:
+        elif chosen < 0.23:
             script.note("goal: joints of the start")
             q = body.start.copy()
-        elif chosen < 0.32:
+        elif chosen < 0.28:
             script.note("goal: joints and a residue")
             q = body.start + rng.choice(RESIDUES) * rng.normal(size=body.n)
         return body.inside(q)
@@ -105,6 +105,8 @@ class Goals:
         w = np.cross(u, np.cross(other, u))
         w /= np.linalg.norm(w)
         radius = float(rng.uniform(0.2, 0.6)) * self.body.way * float(rng.choice([1.0, 1.0, 1.0, 1e-2]))
+        # Points nearer than a thousandth of a millimetre make no circle.
+        radius = max(radius, 5e-5)
 
         def point(degrees: float) -> np.ndarray:
             angle = np.radians(degrees)
@@ -123,7 +125,9 @@ class Goals:
     def in_hand(self, q: np.ndarray) -> Pose:
         """Pose of the tool in the frame of the cell that the other hand carries."""
         frame = self.body.cell.link_frames[self.body.hand_frame]
-        position, rotation = (part[0] for part in link_poses(self.body.cell.robot, q[None], {frame.link})[frame.link])
+        position, rotation = (
+            part[0] for part in link_poses(self.body.cell.robot, q[None], {frame.link})[frame.link]
+        )
         hand = Rotation.from_matrix(rotation)
         origin = position + hand.apply(frame.position)
         axes = hand * Rotation.from_quat(frame.orientation)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import signal
 import traceback
 from collections import Counter
@@ -18,8 +19,34 @@ from irlx.cell.load import load_cell
 from irlx.streams.formats import read_stream
 
 REFUSALS = frozenset(
-    "IRL343 IRL345 IRL347 IRL351 IRL421 IRL422 IRL423 IRL424 IRL425 IRL426 IRL427 IRL428 IRL429 IRL430 IRL434 "
-    "IRL435 IRL437 IRL441 IRL520 IRL521 IRL522 IRL523 IRL524 IRL560 IRL561 IRL562".split()
+    [
+        "IRL343",
+        "IRL345",
+        "IRL347",
+        "IRL351",
+        "IRL421",
+        "IRL422",
+        "IRL423",
+        "IRL424",
+        "IRL425",
+        "IRL426",
+        "IRL427",
+        "IRL428",
+        "IRL429",
+        "IRL430",
+        "IRL434",
+        "IRL435",
+        "IRL437",
+        "IRL441",
+        "IRL520",
+        "IRL521",
+        "IRL522",
+        "IRL523",
+        "IRL524",
+        "IRL560",
+        "IRL561",
+        "IRL562",
+    ]
 )
 """Codes with which a valid program may end: what depends on where the robot stands and what it can do."""
 
@@ -50,7 +77,7 @@ def budget(seconds: float) -> Iterator[None]:
 
 @dataclass
 class Verdict:
-    """What became of a program: motions it has executed, code of its refusal, and what is wrong, '' for nothing.
+    """What became of a program: motions executed, code of its refusal, what is wrong, '' for nothing.
 
     `finding` begins with a word for the kind of mistake, which a smaller program must show as well.
     """
@@ -70,7 +97,7 @@ class Found(Exception):
 
 
 def judged(folder: Path, seed: int, full: bool = True) -> Verdict:
-    """Carry out program.irl of a folder in its cell.toml; `seed` decides how it is cut and in which format kept.
+    """Carry out program.irl of a folder in its cell.toml; `seed` decides how it is cut and kept.
 
     Without `full` the parts that take longest are left to a share of the seeds.
     """
@@ -166,13 +193,15 @@ class _Judge:
             ("acceleration", run.qdd, 4.0 * unit / stream.dt**2),
         ):
             lower, upper = limits.pair(kind)
-            if np.any(values > upper * (1 + 1e-9) + rounding) or np.any(values < lower * (1 + 1e-9) - rounding):
+            if np.any(values > upper * (1 + 1e-9) + rounding) or np.any(
+                values < lower * (1 + 1e-9) - rounding
+            ):
                 raise Found(f"bounds: the {kind} limits of the robot are passed")
         if np.any(np.diff(stream.ticks) != 1):
             raise Found("clock: ticks do not rise by one")
         records = [*((record.tick, record.block) for record in stream.records), (len(run.q) - 1, None)]
         held: tuple[int, ...] = ()
-        for (tick, block), (end, _) in zip(records, records[1:], strict=False):
+        for (tick, block), (end, _) in itertools.pairwise(records):
             if isinstance(block, FreezeBlock):
                 held = block.joints
             columns = [joint - 1 for joint in held]
@@ -220,7 +249,9 @@ class _Judge:
         except irlx.IrlxError as error:
             code = error.diagnostics[0].code
             if code != self.verdict.code or last < len(run.q):
-                raise Found(f"stream: ended with {code}, the run with {self.verdict.code or 'nothing'}") from None
+                raise Found(
+                    f"stream: ended with {code}, the run with {self.verdict.code or 'nothing'}"
+                ) from None
         samples.close()
         if count != last:
             raise Found(f"stream: {count} samples, the run has {last} until there")
@@ -240,7 +271,9 @@ class _Judge:
                 raise KeyboardInterrupt
 
         try:
-            part = irlx.run(self.program, self.cell_path, input=self.input, progress=progress, max_steps=steps)
+            part = irlx.run(
+                self.program, self.cell_path, input=self.input, progress=progress, max_steps=steps
+            )
         except irlx.RunInterrupted as error:
             part = error.run
         except irlx.RunError as error:

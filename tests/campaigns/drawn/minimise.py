@@ -13,7 +13,9 @@ from drawn.program import Case
 OPENING = re.compile(r"^\s*(IF|CASE|FOR|WHILE|REPEAT|PROCEDURE|FUNCTION)\b")
 CLOSING = re.compile(r"(ENDIF|ENDCASE|ENDFOR|ENDWHILE|ENDPROC|ENDFCT)\b|^\s*UNTIL\b")
 CLAUSE = re.compile(r" WITH (?:(?! WITH ).)*(?=;| WITH )")
-PARAMETER = re.compile(r",? [A-Z_]+ := (?:[^,;()]|\([^()]*(?:\([^()]*\)[^()]*)*\))+?(?=;|,? [A-Z_]+ :=| WITH)")
+PARAMETER = re.compile(
+    r",? [A-Z_]+ := (?:[^,;()]|\([^()]*(?:\([^()]*\)[^()]*)*\))+?(?=;|,? [A-Z_]+ :=| WITH)"
+)
 
 
 def kind_of(finding: str) -> str:

@@ -71,13 +71,21 @@ class Moves:
             words["C_PTP"] = (0.25, float(rng.choice([0.0, 1e-7, 20.0, 100.0])))
         else:
             words["C_CP"] = (0.3, float(rng.choice([0.0, 1e-7, 0.2, 1.0])) * 1e3 * body.way)
-        found = [f"{word} := {self.values.real(x, 2, exact=x == 0.0)}" for word, (p, x) in words.items() if script.chance(p)]
+        found = [
+            f"{word} := {self.values.real(x, 2, exact=x == 0.0)}"
+            for word, (p, x) in words.items()
+            if script.chance(p)
+        ]
         if script.chance(0.1):
             found.append(f"C_PASS := {self.values.bool(script.chance(0.6), 2)}")
         if script.chance(0.1):
-            found.append(f"PROFILE := {self.values.string(script.pick(['TRAPEZOID', 'S_CURVE', 's_curve']), 2)}")
-        if script.chance(0.025):
-            found.append(f"TIME := {number(body.span * float(rng.choice([1e-3, 10.0, 30.0], p=[0.02, 0.58, 0.4])))}")
+            found.append(
+                f"PROFILE := {self.values.string(script.pick(['TRAPEZOID', 'S_CURVE', 's_curve']), 2)}"
+            )
+        if script.chance(0.02):
+            found.append(
+                f"TIME := {number(body.span * float(rng.choice([1e-3, 30.0, 60.0], p=[0.02, 0.58, 0.4])))}"
+            )
         for one in found:
             script.note(f"parameter {one.split(' ')[0]}")
         return " " + script.pick([", ", " "]).join(found) if found else ""
@@ -123,7 +131,11 @@ class Moves:
         there = self.goals.turn(self.body.spread)
         here = way if not self.body.robot.flat else np.array([*way[:2], 0.0])
         size = self.body.way * 0.2
-        inner = size * here / max(float(np.linalg.norm(here)), 1e-30) if self.body.robot.turns == "all" else 0.0 * here
+        inner = (
+            size * here / max(float(np.linalg.norm(here)), 1e-30)
+            if self.body.robot.turns == "all"
+            else 0.0 * here
+        )
         at = None if script.at is None else (script.at[0] + script.at[1].apply(inner), script.at[1] * there)
         self.done(1, at, "MOVE_INC by a pose")
         return [f"MOVE_INC LIN {values.pose_of_program((1e3 * inner, there))}{self.tail('LIN')};"]
@@ -149,7 +161,10 @@ class Moves:
         via, end = self.goals.circle(at, 80.0, 170.0)
         self.done(1, at if angle % 360.0 == 0.0 else None, "CIRCLE by an angle")
         points = f"{self.values.point(via)}, {self.values.point(end)}"
-        return [*before, f"MOVE CIRCLE {points} ANGLE := {self.values.real(angle, exact=True)}{self.tail('CIRCLE')};"]
+        return [
+            *before,
+            f"MOVE CIRCLE {points} ANGLE := {self.values.real(angle, exact=True)}{self.tail('CIRCLE')};",
+        ]
 
     # ---- Paths
 
@@ -181,7 +196,9 @@ class Moves:
             return self.path()
         self.script.variables.append(f"{shape}: {name} := ({values});")
         last = self.goals.of(self.goals.posture())
-        more, at = (f"({name}, {self.values.pose(last)})", last) if self.script.chance(0.4) else (name, points[-1])
+        more, at = (
+            (f"({name}, {self.values.pose(last)})", last) if self.script.chance(0.4) else (name, points[-1])
+        )
         self.done(1, at, f"{kind} PATH of an array")
         return [f"MOVE {kind} PATH {more}{self.law(kind)};"]
 
@@ -209,8 +226,13 @@ class Moves:
 
     def ptp_increment(self) -> list[str]:
         before = self.options.usually_free()
-        way = 0.5 * self.body.spread * self.rng.normal(size=self.body.n) * (self.rng.random(self.body.n) < 0.4)
+        way = (
+            0.5 * self.body.spread * self.rng.normal(size=self.body.n) * (self.rng.random(self.body.n) < 0.4)
+        )
         way *= float(self.rng.choice([1.0, 1.0, 1e-16, 0.0]))
+        if self.body.relation is not None:
+            a, b, factor = self.body.relation
+            way[a] = -factor * way[b]
         self.done(1, None, "MOVE_INC of joints")
         return [*before, f"MOVE_INC PTP MAIN_JOINT({join(way * self.body.units)}){self.law('PTP')};"]
 
@@ -229,7 +251,10 @@ class Moves:
         if word == "R_JOINT_ACT":
             joint = int(self.rng.integers(self.body.n)) + 1
             size = 0.3 * self.body.spread * self.body.units[joint - 1] * self.rng.normal()
-            lines = [f"{name} := R_JOINT_ACT.M_JOINT;", f"{name}.A{joint} := {name}.A{joint} + {number(size)};"]
+            lines = [
+                f"{name} := R_JOINT_ACT.M_JOINT;",
+                f"{name}.A{joint} := {name}.A{joint} + {number(size)};",
+            ]
         elif word == "IK":
             lines = [f"{name} := IK({text}, R_JOINT_ACT.M_JOINT);"]
         else:
@@ -240,7 +265,8 @@ class Moves:
     def robtarget(self) -> list[str]:
         pose, name = self.goals.pose(), self.script.name("r")
         more = self.script.pick(["", ", 0", f", 0, ({', '.join(['0'] * self.body.n)})"])
-        self.script.variables.append(f"ROBTARGET: {name} := ROBTARGET({self.values.pose_of_program(self._in_base(pose), exact=True)}{more});")
+        exact = self.values.pose_of_program(self._in_base(pose), exact=True)
+        self.script.variables.append(f"ROBTARGET: {name} := ROBTARGET({exact}{more});")
         self.done(1, pose, "to a ROBTARGET")
         return [f"MOVE LIN {name}{self.tail('LIN')};"]
 
@@ -260,7 +286,10 @@ class Moves:
     def in_hand(self) -> list[str]:
         """In the frame that the other hand carries: both hands move."""
         script, kept = self.script, self.script.base
-        poses = [self.goals.in_hand(self.goals.posture(0.5 * self.body.spread)) for _ in range(int(self.rng.integers(1, 3)))]
+        poses = [
+            self.goals.in_hand(self.goals.posture(0.5 * self.body.spread))
+            for _ in range(int(self.rng.integers(1, 3)))
+        ]
         script.base = (np.zeros(3), kept[1].identity())
         texts = [self.values.pose(pose) for pose in poses]
         script.base = kept
@@ -275,7 +304,9 @@ class Moves:
         q = self.goals.posture(0.3)
         self.script.moves_left -= 1
         self.script.note("move: RECONFIGURATION")
-        where = f" IN FRAME {self.body.hand_frame}" if self.body.hand_frame and self.script.chance(0.5) else ""
+        where = (
+            f" IN FRAME {self.body.hand_frame}" if self.body.hand_frame and self.script.chance(0.5) else ""
+        )
         return [f"RECONFIGURATION {self.values.joints(q)}{where};"]
 
     def closed_loop(self) -> list[str]:
@@ -284,8 +315,12 @@ class Moves:
         others = [self.values.pose(self.goals.of(self.goals.posture())) for _ in range(2)]
         self.done(4, pose, "closed loop")
         self.script.cyclic = False
-        lines = [f"MOVE LIN {corner};", "CYCLICSTART;", *(f"MOVE LIN {one};" for one in [*others, corner]), "CYCLICEND;"]
-        return lines
+        return [
+            f"MOVE LIN {corner};",
+            "CYCLICSTART;",
+            *(f"MOVE LIN {one};" for one in [*others, corner]),
+            "CYCLICEND;",
+        ]
 
     def half_turn(self) -> list[str]:
         """Nearly or exactly half a turn, which has no axis."""

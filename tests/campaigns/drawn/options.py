@@ -27,7 +27,13 @@ class Options:
     """Writes switches and clauses; keeps what is on in the script."""
 
     def __init__(self, script: Script, values: Values, goals: Goals) -> None:
-        self.script, self.rng, self.body, self.values, self.goals = script, script.rng, script.body, values, goals
+        self.script, self.rng, self.body, self.values, self.goals = (
+            script,
+            script.rng,
+            script.body,
+            values,
+            goals,
+        )
 
     def switch(self) -> list[str]:
         """One option on or off."""
@@ -50,7 +56,9 @@ class Options:
             high = np.minimum(body.start + rng.uniform(0.5, 1.5, body.n), upper)
         else:
             typical = body.speed / body.robot.size * (1.0 if kind == "speed" else 5.0 / body.span)
-            size = np.minimum(upper, np.where(np.isfinite(upper), upper, 8.0 * typical)) * rng.uniform(0.4, 1.0, body.n)
+            size = np.minimum(upper, np.where(np.isfinite(upper), upper, 8.0 * typical)) * rng.uniform(
+                0.4, 1.0, body.n
+            )
             low, high = np.maximum(-size * rng.uniform(0.7, 1.0), lower), size
             if script.chance(0.04):
                 script.note(f"{kind} bound 0")
@@ -187,7 +195,10 @@ class Options:
             postures = [self.values.joints(self.goals.posture(0.3)) for _ in range(abs(targets))]
             if script.chance(0.3):
                 # One name after the other, so that none of them is taken for an aggregate.
-                postures = [script.holds("MAIN_JOINT", f"({join(self.goals.posture(0.3) * self.body.units)})") for _ in postures]
+                postures = [
+                    script.holds("MAIN_JOINT", f"({join(self.goals.posture(0.3) * self.body.units)})")
+                    for _ in postures
+                ]
             text = ", ".join(postures)
             found.append(f" WITH RECONFIGURATION {f'({text})' if targets < 0 else text}")
         if script.chance(0.06 if kind != "PTP" else 0.01):

@@ -74,7 +74,12 @@ def drawn_case(seed: int, kind: str | None = None) -> Case:
     robot = drawn_robot(rng, kind)
     body = CellDrawing(rng, robot).body()
     script = Script(rng, body)
-    script.note(f"robot {robot.kind}", f"tick {body.tick} ms", f"{body.n} joints", *(f"cell: {s}" for s in body.special))
+    script.note(
+        f"robot {robot.kind}",
+        f"tick {body.tick} ms",
+        f"{body.n} joints",
+        *(f"cell: {s}" for s in body.special),
+    )
     if robot.kind == "named":
         script.note(f"model {robot.model}")
     script.at = body.home
@@ -90,7 +95,12 @@ def drawn_case(seed: int, kind: str | None = None) -> Case:
     elif script.chance(0.05):
         script.note("RETURN of the program")
         lines += ["RETURN;"]
-    files = {"program.irl": program_text(script, lines), "cell.toml": body.text, **robot.files, **beside(script)}
+    files = {
+        "program.irl": program_text(script, lines),
+        "cell.toml": body.text,
+        **robot.files,
+        **beside(script),
+    }
     return Case(seed, files, script.noted, body.tick)
 
 
@@ -98,10 +108,16 @@ def beside(script: Script) -> dict[str, str]:
     """Files beside the program."""
     files = {"numbers.txt": NUMBERS, "input.txt": " ".join([*script.reads, ""])}
     if script.data:
-        files["points.dat"] = "\n".join(["DATALIST points;", *(f"  {line}" for line in script.data), "ENDDATALIST", ""])
+        files["points.dat"] = "\n".join(
+            ["DATALIST points;", *(f"  {line}" for line in script.data), "ENDDATALIST", ""]
+        )
     if script.module or "called" in script.needs:
         exported = [*script.exported, *(["called"] if "called" in script.needs else [])]
-        body = [f"EXPORT {', '.join(exported)};", *script.module, *(CALLED if "called" in script.needs else [])]
+        body = [
+            f"EXPORT {', '.join(exported)};",
+            *script.module,
+            *(CALLED if "called" in script.needs else []),
+        ]
         files["parts.irl"] = "\n".join(["MODULE parts;", *body, "ENDMODULE", ""])
     return files
 

@@ -14,9 +14,9 @@ from irlx.cell.robot_data import robot_data_folder
 class Robot:
     """A robot for a cell: lines of its table `[robot]`, its files, a posture to begin near.
 
-    `start` in rad and m, None for that of the named robot; `size` m, how far it reaches; `turns` which turns of
-    the tool a program may ask for, axes of the root frame: 'all', 'z', or 'none' where a turn follows from the
-    rest; `flat` where all motion is in a plane z = const; `hand` a link that another hand brings.
+    `start` in rad and m, None for that of the named robot; `size` m, how far it reaches; `turns` which turns
+    of the tool a program may ask for, axes of the root frame: 'all', 'z', or 'none' where a turn follows from
+    the rest; `flat` where all motion is in a plane z = const; `hand` a link that another hand brings.
     """
 
     kind: str
@@ -48,8 +48,9 @@ class Urdf:
         mass = 0.5 + 4.0 * length
         inertia = mass * (0.1 * length**2 + 0.01)
         self.parts.append(
-            f'  <link name="{name}">\n    <inertial><origin xyz="0 0 {0.5 * length!r}"/><mass value="{mass!r}"/>'
-            f'<inertia ixx="{inertia!r}" ixy="0" ixz="0" iyy="{inertia!r}" iyz="0" izz="{inertia!r}"/></inertial>\n'
+            f'  <link name="{name}">\n    <inertial><origin xyz="0 0 {0.5 * length!r}"/>'
+            f'<mass value="{mass!r}"/><inertia ixx="{inertia!r}" ixy="0" ixz="0" iyy="{inertia!r}" iyz="0" '
+            f'izz="{inertia!r}"/></inertial>\n'
             f"    <collision>{solid}</collision>\n  </link>"
         )
 
@@ -80,7 +81,13 @@ def _pair(rng: np.random.Generator, wide: float = 2.6) -> tuple[float, float]:
 
 
 def _chain(
-    rng: np.random.Generator, urdf: Urdf, root: str, prefix: str, n: int, slides: int = 0, endless: float = 0.0
+    rng: np.random.Generator,
+    urdf: Urdf,
+    root: str,
+    prefix: str,
+    n: int,
+    slides: int = 0,
+    endless: float = 0.0,
 ) -> list[float]:
     """An arm of n joints up from `root`, slides first; returns a bent start posture."""
     at, above, start = root, 0.0, []
@@ -114,7 +121,9 @@ def _tool(urdf: Urdf, parent: str, name: str = "tool", away: float = 0.1) -> Non
 def _made(kind: str, urdf: Urdf, start: list[float], *lines: str, **more) -> Robot:
     lines = ('tip = "tool"', *lines)
     files = {"robot.urdf": urdf.text()}
-    return Robot(kind, "robot.urdf", lines=lines, files=files, start=np.array(start), urdf_name=urdf.name, **more)
+    return Robot(
+        kind, "robot.urdf", lines=lines, files=files, start=np.array(start), urdf_name=urdf.name, **more
+    )
 
 
 def serial(rng: np.random.Generator, kind: str = "serial", slides: int = 0, endless: float = 0.0) -> Robot:
@@ -159,13 +168,17 @@ def scara(rng: np.random.Generator) -> Robot:
     urdf, at, start = Urdf("drawn_scara"), "base", []
     urdf.link("base", 0.1, 0.05)
     for k in range(arms):
-        urdf.joint("revolute", at, f"link_{k + 1}", (0.0 if k == 0 else 0.3, 0, 0.3 if k == 0 else 0), Z, _pair(rng))
+        urdf.joint(
+            "revolute", at, f"link_{k + 1}", (0.0 if k == 0 else 0.3, 0, 0.3 if k == 0 else 0), Z, _pair(rng)
+        )
         urdf.link(f"link_{k + 1}", 0.05, 0.03)
         start.append(float(rng.uniform(0.4, 0.9)))
         at = f"link_{k + 1}"
     urdf.joint("prismatic", at, "quill", (0.3, 0, 0), Z, (-0.3, 0.3), 0.6)
     urdf.link("quill", 0.1, 0.02)
-    urdf.joint("continuous" if rng.random() < 0.3 else "revolute", "quill", "flange", (0, 0, 0), Z, (-3.0, 3.0), 4.0)
+    urdf.joint(
+        "continuous" if rng.random() < 0.3 else "revolute", "quill", "flange", (0, 0, 0), Z, (-3.0, 3.0), 4.0
+    )
     urdf.link("flange", 0.03, 0.02)
     _tool(urdf, "flange")
     return _made("scara", urdf, [*start, 0.0, 0.1], 'task = ["x", "y", "z", "rz"]', turns="z")

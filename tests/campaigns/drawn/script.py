@@ -66,8 +66,10 @@ class Script:
         return f"{letter}{self.count}"
 
     def holds(self, type_: str, value: str, exact: bool = True) -> str:
-        """A place of the program that holds a value: variable, constant, part of an array or a record, datum."""
-        kind = self.pick(["variable"] * 5 + ["constant", "array", "record", "data", "module", "group", "dotted"])
+        """A place that holds a value: variable, constant, part of an array or record, datum."""
+        kind = self.pick(
+            ["variable"] * 5 + ["constant", "array", "record", "data", "module", "group", "dotted"]
+        )
         name = self.name()
         simple = type_ in {"INT", "REAL", "BOOL", "STRING", "CHAR", "POSITION", "ORIENTATION", "POSE"}
         if kind == "constant" and exact:
@@ -81,8 +83,8 @@ class Script:
         elif kind == "record" and simple:
             self.note("record")
             record = self.name("t")
-            self.types.append(f"RECORD INT: tag; {type_}: {'what.now' if self.chance(0.5) else 'what'}; ENDRECORD = {record};")
-            field_name = self.types[-1].split(": ")[2].split(";")[0]
+            field_name = "what.now" if self.chance(0.5) else "what"
+            self.types.append(f"RECORD INT: tag; {type_}: {field_name}; ENDRECORD = {record};")
             self.variables.append(f"{record}: {name} := (7, {value});")
             return f"{name}.{field_name}"
         elif kind == "data" and exact:
@@ -95,7 +97,9 @@ class Script:
             self.exported.append(name)
         elif kind == "group" and simple:
             self.note("array of two dimensions")
-            self.variables.append(f"ARRAY [1..2, -1..0] OF {type_}: {name} := ({value}, {value}, {value}, {value});")
+            self.variables.append(
+                f"ARRAY [1..2, -1..0] OF {type_}: {name} := ({value}, {value}, {value}, {value});"
+            )
             return f"{name}[{self.pick(['1', '2'])}, {self.pick(['-1', '0'])}]"
         else:
             self.note("variable")

@@ -102,7 +102,10 @@ class Statements:
         values, which = self.values, int(self.rng.integers(4))
         lines = [f"IF {values.bool(which == 0)} THEN", *(self._inner() if which == 0 else self._dead())]
         if self.script.chance(0.5) or which == 1:
-            lines += [f"ELSIF {values.bool(which == 1)} THEN", *(self._inner() if which == 1 else self._dead())]
+            lines += [
+                f"ELSIF {values.bool(which == 1)} THEN",
+                *(self._inner() if which == 1 else self._dead()),
+            ]
         if self.script.chance(0.5) or which == 2:
             lines += ["ELSE", *(self._inner() if which >= 2 else self._dead())]
         return [*lines, "ENDIF;"]
@@ -164,7 +167,12 @@ class Statements:
         if script.chance(0.5):
             return [f"GOTO {label};", *(line[2:] for line in self._dead()), f"{label}:"]
         body = [line[2:] for line in self._again(2)]
-        return [f"{label}:", f"{counter} := {counter} + 1;", *body, f"IF {counter} < 2 THEN GOTO {label}; ENDIF;"]
+        return [
+            f"{label}:",
+            f"{counter} := {counter} + 1;",
+            *body,
+            f"IF {counter} < 2 THEN GOTO {label}; ENDIF;",
+        ]
 
     # ---- Routines
 
@@ -213,7 +221,11 @@ class Statements:
         script, kept = self.script, self.script.base
         flat = self.body.robot.flat
         place = 0.2 * self.body.robot.size * self.rng.normal(size=3) * (1, 1, not flat)
-        turned = Rotation.from_euler("z", float(self.rng.uniform(-3, 3))) if flat else Rotation.random(rng=self.rng)
+        turned = (
+            Rotation.from_euler("z", float(self.rng.uniform(-3, 3)))
+            if flat
+            else Rotation.random(rng=self.rng)
+        )
         x, y, z, w = turned.as_quat()
         text = f"POSE(POSITION({join(1e3 * place)}), ORIQUAT({join((w, x, y, z))}))"
         if script.chance(0.3):
@@ -228,7 +240,9 @@ class Statements:
         script, robot = self.script, self.body.robot
         if robot.turns == "none" or robot.kind == "free turns":
             return self.small()
-        turn = Rotation.from_rotvec(self.rng.normal(size=3) * (0, 0, 1) if robot.turns == "z" else self.rng.normal(size=3))
+        turn = Rotation.from_rotvec(
+            self.rng.normal(size=3) * (0, 0, 1) if robot.turns == "z" else self.rng.normal(size=3)
+        )
         place = 0.05 * robot.size * self.rng.normal(size=3) * (1, 1, not robot.flat)
         x, y, z, w = turn.as_quat()
         script.tool = (place, turn)
@@ -250,8 +264,15 @@ class Statements:
             "assignment STRING": [f"word := {values.string('seam ')} + sign;"],
             "assignment CHAR": [f"sign := {values.char('b')};"],
             "assignment of an element": ["counts[n MOD 4] := counts[m MOD 4] + n;"],
-            "assignment of a field": ["here := R_ROBTARGET_ACT.PSE;", f"here.POS.Z := {values.real(12.5, 2)};"],
-            "where the robot is": ["both := R_JOINT_ACT;", "joints := both.M_JOINT;", "place := R_ROBTARGET_ACT;"],
+            "assignment of a field": [
+                "here := R_ROBTARGET_ACT.PSE;",
+                f"here.POS.Z := {values.real(12.5, 2)};",
+            ],
+            "where the robot is": [
+                "both := R_JOINT_ACT;",
+                "joints := both.M_JOINT;",
+                "place := R_ROBTARGET_ACT;",
+            ],
             "last move": ["x := R_MOVE_TIME + R_DISTANCE_BACK - R_DISTANCE_FORW;"],
             "FK": [f"here := FK({asked});"],
             "MANIPULABILITY": [f"x := MANIPULABILITY({asked});"],
@@ -267,8 +288,23 @@ class Statements:
             "WRITE": ["WRITE(n, ' ', x:8:3, flag, word:6);", "WRITELN;"],
             "WRITELN": ["WRITELN('n is', n:4, counts[0]);"],
             "a log": ["OPEN(log, 'log.txt', 'WRITE');", "WRITELN(log, x, ' ', n);", "CLOSE(log);"],
-            "APPEND": ["OPEN(log, 'more.txt', 'write');", "WRITELN(log, n);", "CLOSE(log);", "OPEN(log, 'more.txt', 'APPEND');", "WRITE(log, 'end');", "CLOSE(log);"],
-            "READ": ["OPEN(table, 'numbers.txt', 'READ');", "READ(table, n, x, flag);", "READ(table, sign, word);", "WHILE NOT EOF(table) DO", "  READ(table, word);", "ENDWHILE;", "CLOSE(table);"],
+            "APPEND": [
+                "OPEN(log, 'more.txt', 'write');",
+                "WRITELN(log, n);",
+                "CLOSE(log);",
+                "OPEN(log, 'more.txt', 'APPEND');",
+                "WRITE(log, 'end');",
+                "CLOSE(log);",
+            ],
+            "READ": [
+                "OPEN(table, 'numbers.txt', 'READ');",
+                "READ(table, n, x, flag);",
+                "READ(table, sign, word);",
+                "WHILE NOT EOF(table) DO",
+                "  READ(table, word);",
+                "ENDWHILE;",
+                "CLOSE(table);",
+            ],
             "function": ["n := turns_of(5) MOD 11;", "turns_of(2);"],
             "comment": ["{ nothing }", "(* nothing either *)"],
         }

@@ -1,4 +1,4 @@
-"""Expressions of every type that have a value which is known, in all the ways that the language has for it."""
+"""Expressions of every type whose value is known, in all the ways that the language has for it."""
 
 from __future__ import annotations
 
@@ -36,16 +36,31 @@ class Values:
             ("/", lambda: f"{self.real(value * other, deep)} / {self.real(other, deep)}"),
             ("sign", lambda: f"-({self.real(-value, deep)})"),
             ("FLOAT", lambda: f"(FLOAT({self.int(2, deep)}) * {self.real(value / 2, deep)})"),
-            ("SIN COS", lambda: f"({self.real(value, deep)} * (SIN({other}) * SIN({other}) + COS({other}) * COS({other})))"),
+            (
+                "SIN COS",
+                lambda: (
+                    f"({self.real(value, deep)} * (SIN({other}) * SIN({other})"
+                    f" + COS({other}) * COS({other})))"
+                ),
+            ),
             ("ATAN TAN", lambda: f"({self.real(value, deep)} * TAN(ATAN({other})) / {other})"),
             ("ATAN2", lambda: f"({self.real(value / 45.0, deep)} * ATAN2({other}, {other}))"),
             ("ASIN ACOS", lambda: f"({self.real(value / 90.0, deep)} * (ASIN(0.5) + ACOS(0.5)))"),
             ("EXP LN", lambda: f"({self.real(value, deep)} * EXP(LN({other})) / {other})"),
-            ("NORM DISTANCE DOT", lambda: f"({self.real(value - other, deep)} + NORM(POSITION(0, 0, {other})) - DISTANCE(POSITION(1, 2, 3), (1, 2, 3)) * DOT(POSITION(1, 0, 0), (0, 1, 0)))"),
+            (
+                "NORM DISTANCE DOT",
+                lambda: (
+                    f"({self.real(value - other, deep)} + NORM(POSITION(0, 0, {other}))"
+                    " - DISTANCE(POSITION(1, 2, 3), (1, 2, 3)) * DOT(POSITION(1, 0, 0), (0, 1, 0)))"
+                ),
+            ),
             ("field", lambda: f"POSITION({self.real(1.0, deep)}, {self.real(value, deep)}, 0).Y"),
         ]
         if value >= 0.0:
-            ways += [("ABS", lambda: f"ABS({self.real(-value, deep)})"), ("SQRT", lambda: f"SQRT({self.real(value * value, deep)})")]
+            ways += [
+                ("ABS", lambda: f"ABS({self.real(-value, deep)})"),
+                ("SQRT", lambda: f"SQRT({self.real(value * value, deep)})"),
+            ]
         word, write = script.pick([way for way in ways if way[0] != "field"])
         script.note(f"REAL {word}")
         return write()
@@ -104,7 +119,9 @@ class Values:
         """Never a literal alone, which is a STRING where nothing asks for a CHAR."""
         script, text = self.script, f"'{value}x'"
         held = script.holds("STRING", text) if script.chance(0.5) else ""
-        return f"{held}[1]" if held else script.pick([f"CHR({ord(value)})", script.holds("CHAR", f"'{value}'")])
+        return (
+            f"{held}[1]" if held else script.pick([f"CHR({ord(value)})", script.holds("CHAR", f"'{value}'")])
+        )
 
     def string(self, value: str, depth: int = 0) -> str:
         script = self.script
@@ -135,11 +152,37 @@ class Values:
                 ("*", lambda: f"({self.position(mm / k, deep)} * {self.real(k, deep)})"),
                 ("* number first", lambda: f"({self.real(k, deep)} * {self.position(mm / k, deep)})"),
                 ("/ by sign", lambda: f"(-1 * {self.position(-mm, deep)})"),
-                ("turned", lambda: f"({self.orientation(ori, deep)} * {self.position(ori.inv().apply(mm), deep)})"),
-                ("POS", lambda: f"{script.holds('POSE', self.pose_of_program((mm, ori), DEEPEST), exact=False)}.POS"),
-                ("POSE @", lambda: f"({self.pose_of_program((other, ori), deep)} @ {self.position(ori.inv().apply(mm - other), deep)})"),
-                ("CROSS", lambda: f"({self.position(mm - (0, 0, 6.0), deep)} + CROSS(POSITION(2, 0, 0), (0, 3, 0)))"),
-                ("VECTORS", lambda: f"(VECTORN({self.orientation(ori, deep)}) * {number(ori.inv().apply(mm)[0])} + VECTORO({self.orientation(ori, deep)}) * {number(ori.inv().apply(mm)[1])} + VECTORA({self.orientation(ori, deep)}) * {number(ori.inv().apply(mm)[2])})"),
+                (
+                    "turned",
+                    lambda: f"({self.orientation(ori, deep)} * {self.position(ori.inv().apply(mm), deep)})",
+                ),
+                (
+                    "POS",
+                    lambda: (
+                        f"{script.holds('POSE', self.pose_of_program((mm, ori), DEEPEST), exact=False)}.POS"
+                    ),
+                ),
+                (
+                    "POSE @",
+                    lambda: (
+                        f"({self.pose_of_program((other, ori), deep)}"
+                        f" @ {self.position(ori.inv().apply(mm - other), deep)})"
+                    ),
+                ),
+                (
+                    "CROSS",
+                    lambda: (
+                        f"({self.position(mm - (0, 0, 6.0), deep)} + CROSS(POSITION(2, 0, 0), (0, 3, 0)))"
+                    ),
+                ),
+                (
+                    "VECTORS",
+                    lambda: (
+                        f"(VECTORN({self.orientation(ori, deep)}) * {number(ori.inv().apply(mm)[0])}"
+                        f" + VECTORO({self.orientation(ori, deep)}) * {number(ori.inv().apply(mm)[1])}"
+                        f" + VECTORA({self.orientation(ori, deep)}) * {number(ori.inv().apply(mm)[2])})"
+                    ),
+                ),
             ]
         )
         script.note(f"POSITION {word}")
@@ -160,16 +203,29 @@ class Values:
             (f"ORI{order}", lambda: f"ORI{order}({join(ori.as_euler(order, degrees=True))})"),
             ("ORIZYZ2", lambda: f"ORIZYZ2({join(ori.as_euler('ZYZ', degrees=True))})"),
             ("ORIMAT", lambda: f"ORIMAT(({join(n)}), ({join(o)}), ({join(a)}))"),
-            ("ORIRS", lambda: f"ORIRS((1, 2, 3), ({join(n * 50 + (1, 2, 3))}), ({join(n * 20 + o * 30 + (1, 2, 3))}))"),
+            (
+                "ORIRS",
+                lambda: (
+                    f"ORIRS((1, 2, 3), ({join(n * 50 + (1, 2, 3))}), ({join(n * 20 + o * 30 + (1, 2, 3))}))"
+                ),
+            ),
             ("INV", lambda: f"INV({self.orientation(ori.inv(), deep)})"),
             ("@", lambda: f"({self.orientation(ori * other, deep)} @ {self.orientation(other.inv(), deep)})"),
             ("ROTAXIS ROTANGLE", lambda: f"ORIVANG(ROTAXIS({plain}), ROTANGLE({plain}))"),
-            ("QUATA to QUATD", lambda: f"ORIQUAT(QUATA({plain}), QUATB({plain}), QUATC({plain}), QUATD({plain}))"),
-            ("ANGLEX ANGLEY ANGLEZ", lambda: f"ORI{order}({', '.join(f'ANGLE{c}({order!r}, {plain})' for c in order)})"),
+            (
+                "QUATA to QUATD",
+                lambda: f"ORIQUAT(QUATA({plain}), QUATB({plain}), QUATC({plain}), QUATD({plain}))",
+            ),
+            (
+                "ANGLEX ANGLEY ANGLEZ",
+                lambda: f"ORI{order}({', '.join(f'ANGLE{c}({order!r}, {plain})' for c in order)})",
+            ),
             ("ORI", lambda: f"{script.holds('POSE', held, exact=False)}.ORI"),
         ]
         if angle > 1e-3:
-            ways.append(("ORIVANG", lambda: f"ORIVANG(({join(axis / angle * 3.0)}), {number(np.degrees(angle))})"))
+            ways.append(
+                ("ORIVANG", lambda: f"ORIVANG(({join(axis / angle * 3.0)}), {number(np.degrees(angle))})")
+            )
         word, write = script.pick(ways)
         script.note(f"ORIENTATION {word}")
         return write()
@@ -204,7 +260,13 @@ class Values:
                 ("INV", lambda: f"INV({self.pose_of_program(inverse, deep)})"),
                 ("+", lambda: f"({self.pose_of_program((mm - shift, ori), deep)} + ({join(shift)}))"),
                 ("-", lambda: f"({self.pose_of_program((mm + shift, ori), deep)} - POSITION({join(shift)}))"),
-                ("aggregate behind @", lambda: f"({self.pose_of_program(other, deep)} @ (({join(after[0])}), {self.orientation(after[1], deep)}))"),
+                (
+                    "aggregate behind @",
+                    lambda: (
+                        f"({self.pose_of_program(other, deep)}"
+                        f" @ (({join(after[0])}), {self.orientation(after[1], deep)}))"
+                    ),
+                ),
             ]
         )
         script.note(f"POSE {word}")

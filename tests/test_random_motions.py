@@ -1,0 +1,92 @@
+"""The quick part of the random motions, and the findings of the long one (`tests/campaigns/motions.py`).
+
+One program again, with everything said of it: `python tests/campaigns/motions.py --only SEED`.
+"""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from compiled_grammar import build_grammar
+from drawn.coverage import WANTED, noted, rules
+from drawn.judging import REFUSALS, judged
+from drawn.minimise import kind_of, smaller
+from drawn.program import drawn_case
+from drawn.robots import KINDS
+from irlx.diagnostics.codes import CATALOGUE
+
+pytestmark = pytest.mark.req("QA-05")
+
+SEEDS = range(500, 503)
+SAMPLE = range(5000, 5060)
+UNUSED = frozenset()
+"""Rules of the grammar that no drawn program uses."""
+CORPUS = sorted((Path(__file__).parent / "corpus" / "motions").iterdir())
+
+
+@pytest.fixture(scope="module")
+def sample():
+    return [drawn_case(seed) for seed in SAMPLE]
+
+
+@pytest.mark.filterwarnings("ignore:Gimbal lock")
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_drawn_program_is_carried_out_or_refused_at_its_place(tmp_path: Path, seed: int) -> None:
+    print(f"again: python tests/campaigns/motions.py --only {seed}")
+    drawn_case(seed).write(tmp_path)
+    verdict = judged(tmp_path, seed, full=False)
+    assert not verdict.finding, verdict.finding
+
+
+@pytest.mark.parametrize("folder", CORPUS, ids=lambda folder: folder.name)
+def test_what_was_found_once_stays_mended(tmp_path: Path, folder: Path) -> None:
+    """What must hold is in its note: the program runs to its end, and everything about it is true."""
+    for file in folder.iterdir():
+        shutil.copy(file, tmp_path)
+    verdict = judged(tmp_path, 0)
+    assert not verdict.finding, verdict.finding
+    assert not verdict.code, verdict.message
+    assert (folder / "note.txt").read_text(encoding="utf-8").strip()
+
+
+@pytest.mark.filterwarnings("ignore:Gimbal lock")
+@pytest.mark.req("QA-03")
+def test_a_sample_uses_every_rule_of_the_grammar(sample) -> None:
+    used, names = rules(sample[:40], build_grammar())
+    assert names - set(used) == UNUSED
+
+
+@pytest.mark.filterwarnings("ignore:Gimbal lock")
+def test_a_sample_uses_every_option_and_kind_of_robot(sample) -> None:
+    counts = noted(sample)
+    assert [word for word in WANTED if not counts[word]] == []
+
+
+@pytest.mark.filterwarnings("ignore:Gimbal lock")
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_seed_gives_the_same_program(kind: str) -> None:
+    assert drawn_case(7, kind).files == drawn_case(7, kind).files
+
+
+def test_refusals_are_codes() -> None:
+    assert CATALOGUE.keys() >= REFUSALS
+
+
+def test_a_finding_is_made_smaller(tmp_path: Path) -> None:
+    """Of a program with an error what is left is little more than the error."""
+    files = {
+        "program.irl": "PROGRAM p;\nSYSTEM SPECIFICATION cell;\nVAR REAL: x := 1;\nBEGIN\n  x := 2;\n"
+        "  IF x > 1 THEN\n    x := nobody;\n  ENDIF;\n  x := 3;\nENDPROGRAM;\n",
+        "cell.toml": '[robot]\nmodel = "planar3"\n[motion]\ntick_ms = 10\n',
+        "numbers.txt": "1 2 3\n",
+    }
+    for name, text in files.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    assert kind_of(judged(tmp_path, 0).finding) == "check IRL201"
+    found = smaller(files, 0)
+    assert found.keys() == {"program.irl", "cell.toml"}
+    assert len(found["program.irl"].splitlines()) <= 6
+    assert "[motion]" not in found["cell.toml"]
