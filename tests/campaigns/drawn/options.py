@@ -106,8 +106,10 @@ class Options:
             self.script.frozen = ()
             self.script.note("switch FREEZEEND")
             return ["FREEZEEND;"]
+        # Of two arms only joints of the one that does not carry the tool can be spared at will.
+        joints = spare if self.body.robot.hand else self.body.n
         count = int(self.rng.integers(1, spare + 1))
-        self.script.frozen = tuple(int(j) + 1 for j in self.rng.choice(self.body.n, count, replace=False))
+        self.script.frozen = tuple(int(j) + 1 for j in self.rng.choice(joints, count, replace=False))
         self.script.note("switch FREEZESTART")
         return [f"FREEZESTART {', '.join(self.values.int(joint, 2) for joint in self.script.frozen)};"]
 
