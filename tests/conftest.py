@@ -4,7 +4,9 @@ import compileall
 import gc
 import os
 import signal
+import sys
 import threading
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -13,6 +15,32 @@ import pytest
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 SOURCE = Path(__file__).resolve().parents[1] / "src"
+SUITE = 5000
+"""Tests from which on a run is taken for that of the suite, whose time is watched."""
+LONGEST = 15.0
+"""Seconds that the tests of a file may take together: the workers share out whole files."""
+FIRST = [
+    "report/page/test_in_browser.py",
+    "koch/test_experiments_command.py",
+    "test_tolerance.py",
+    "test_slowdown_acceptance.py",
+    "test_readme.py",
+    "test_ptp_beside_paths.py",
+    "koch/test_peak_of_joint_7.py",
+    "cli/test_slowed_run.py",
+    "cli/test_terminal.py",
+    "cli/test_commands.py",
+    "test_combined.py",
+    "test_obstacle_campaign.py",
+    "test_reconfiguration_optimum.py",
+    "test_cyclic_campaign.py",
+    "test_two_arms.py",
+    "test_cycles.py",
+    "test_dry_run.py",
+    "test_tutorial.py",
+    "verifier/test_good_streams.py",
+]
+"""Long files of few tests begin first: one that began last would keep a worker when the other is done."""
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -20,12 +48,38 @@ def pytest_configure(config: pytest.Config) -> None:
     if threading.current_thread() is threading.main_thread():
         # A shell starts its background jobs with interrupts ignored, and children inherit that.
         signal.signal(signal.SIGINT, signal.default_int_handler)
+    # Python may have been told to write no bytecode, but to rewrite all assertions anew takes 12 s.
+    sys.dont_write_bytecode = False
+    if hasattr(config.option, "loadscopereorder"):
+        # Workers take files in the order below, not those of most tests first.
+        config.option.loadscopereorder = False
     if not hasattr(config, "workerinput"):
-        # Some hundred tests start irlx as a process; Python may have been told to write no bytecode.
+        # Some tests start irlx as a process, which writes none.
         compileall.compile_dir(SOURCE, quiet=2)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """The long files come first; the order within a file stays."""
+    places = {f"tests/{name}": place for place, name in enumerate(FIRST)}
+    items.sort(key=lambda item: places.get(item.nodeid.partition("::")[0], len(FIRST)))
 
 
 def pytest_collection_finish() -> None:
     """Thousands of waiting tests are not looked through at every collection of garbage: a twentieth of it."""
     gc.collect()
     gc.freeze()
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """The files whose tests took longest, after a run of the suite."""
+    taken: Counter[str] = Counter()
+    reports = [report for found in terminalreporter.stats.values() for report in found]
+    for report in reports:
+        if isinstance(report, pytest.TestReport):
+            taken[report.nodeid.partition("::")[0]] += report.duration
+    if sum(getattr(report, "when", None) == "call" for report in reports) < SUITE:
+        return
+    terminalreporter.section(f"files that took longest, of {taken.total():.0f} s")
+    for name, seconds in taken.most_common(10):
+        over = f"  more than the {LONGEST:.0f} s of a file" if seconds > LONGEST else ""
+        terminalreporter.write_line(f"{seconds:6.1f} s  {name}{over}")

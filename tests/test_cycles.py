@@ -39,7 +39,7 @@ def run_of(name: str, cyclic: bool, folder: Path) -> irlx.Run:
     words = {"start": "CYCLICSTART;" if cyclic else "", "end": "CYCLICEND;" if cyclic else ""}
     words["squares"] = "  MOVE LIN p2, p3, p4, p5, p1;\n" * 5
     (folder / "squares.irl").write_text(SQUARE.format(**words), encoding="utf-8")
-    return irlx.run(folder / "squares.irl", cell=PROGRAMS / "koch" / "square.toml", tick_ms=20)
+    return irlx.run(folder / "squares.irl", cell=PROGRAMS / "koch" / "square.toml", tick_ms=50)
 
 
 @pytest.fixture(scope="module")

@@ -51,7 +51,7 @@ def outcome(folder: Path, seed: int, kinds: tuple[str, ...] = KINDS) -> tuple[st
 
 
 @pytest.mark.req("QA-05")
-@pytest.mark.parametrize("seed", first(6, QUICK))
+@pytest.mark.parametrize("seed", first(4, QUICK))
 def test_drawn_programs(tmp_path, seed) -> None:
     outcome(tmp_path, seed)
 
@@ -71,7 +71,7 @@ def joined(tmp_path_factory) -> Callable[[int], int]:
 
 
 @pytest.mark.req("MOT-06")
-@pytest.mark.parametrize("seed", first(6, QUICK))
+@pytest.mark.parametrize("seed", first(4, QUICK))
 def test_drawn_programs_of_ptps_beside_paths(joined, seed) -> None:
     assert joined(seed) >= 0
 

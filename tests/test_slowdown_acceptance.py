@@ -86,7 +86,7 @@ def test_panda_joint_1_is_absorbed_by_the_redundancy(tmp_path, tick: float) -> N
 
 @needs_panda
 @ticks
-@pytest.mark.parametrize("acceleration", [False, 15.0])
+@pytest.mark.parametrize("acceleration", [False, pytest.param(15.0, marks=pytest.mark.slow)])
 def test_panda_joint_4_slows_the_circle_by_two_per_cent(tmp_path, tick: float, acceleration) -> None:
     run, duration = reference(tmp_path, "panda", tick, acceleration=acceleration, speed={4: 0.376})
     assert DURATION <= duration <= 5.06

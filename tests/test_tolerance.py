@@ -30,7 +30,7 @@ start = [8, 25, 15, 10, 45, -8]
 [robot.limits]
 acceleration = [400, 400, 500, 900, 900, 1200]
 [motion]
-tick_ms = 20
+tick_ms = 40
 speed = 200
 acc = 1000
 """
@@ -311,7 +311,7 @@ def test_the_programs_run_without_a_word_and_verify(name: str) -> None:
     assert irlx.verify(found, program=program, cell=cell).passed
 
 
-@pytest.mark.parametrize("seed", [32, 52, pytest.param(range(1, 60), marks=pytest.mark.slow)])
+@pytest.mark.parametrize("seed", [32, pytest.param(range(1, 60), marks=pytest.mark.slow)])
 def test_drawn_programs_verify(seed, tmp_path) -> None:
     for number in [seed] if isinstance(seed, int) else seed:
         print("seed", number)

@@ -1,7 +1,7 @@
 import json
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 
 from drawn_blocks import blocks
 from irlx.blocks import (
@@ -22,6 +22,7 @@ def all_kinds(base: type) -> set[type]:
 
 
 @pytest.mark.req("STR-03")
+@settings(max_examples=40)
 @given(blocks)
 def test_blocks_survive_json(block: Block) -> None:
     text = json.dumps(block_to_plain(block), allow_nan=False)

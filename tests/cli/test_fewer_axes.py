@@ -25,7 +25,7 @@ ANYHOW = 'model = "arm7"\ntask = ["x", "y", "z"]\nfree = ["rx", "ry", "rz"]\n'
 
 
 def written(folder: Path, body: str, robot: str = IRB6, declarations: str = "") -> Path:
-    cell = f"[robot]\n{robot}\n[motion]\ntick_ms = 20\nspeed = 300\nacc = 1500\n"
+    cell = f"[robot]\n{robot}\n[motion]\ntick_ms = 40\nspeed = 300\nacc = 1500\n"
     (folder / "p.toml").write_text(cell, encoding="utf-8")
     text = f"PROGRAM p;\n{declarations}\nBEGIN\n{body}\nENDPROGRAM\n"
     (folder / "p.irl").write_text(text, encoding="utf-8")

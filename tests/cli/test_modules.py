@@ -10,7 +10,7 @@ from irlx.cli.main import main
 
 pytestmark = [pytest.mark.req("LANG-12"), pytest.mark.req("LANG-10")]
 
-CELL = '[robot]\nmodel = "koch11"\n[motion]\ntick_ms = 20\nspeed = 1000\nacc = 2000\n'
+CELL = '[robot]\nmodel = "koch11"\n[motion]\ntick_ms = 50\nspeed = 1000\nacc = 2000\n'
 HOME = "POSE: home := ((11500, 1000, 3500), ORIZYX(0, 0, 0))"
 
 

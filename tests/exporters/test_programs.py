@@ -123,7 +123,7 @@ def test_gaps_are_time(target: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("target", TARGETS)
-@pytest.mark.parametrize("seed", first(3, range(6)))
+@pytest.mark.parametrize("seed", first(2, range(6)))
 def test_any_values_read_back(target: str, seed: int, tmp_path: Path) -> None:
     print("seed", seed)
     rng = np.random.default_rng(seed)

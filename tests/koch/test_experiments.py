@@ -19,10 +19,10 @@ NAMES = ["square", "square_limits", "square_speed", "square_accel", "square_cycl
 JOINT_7, JOINT_10, JOINT_11 = 6, 9, 10
 TURNING = np.arange(11) != JOINT_10
 
-FINE = [pytest.param(tick, marks=pytest.mark.slow) for tick in TICKS if tick < 40]
+FINE = [pytest.param(tick, marks=pytest.mark.slow) for tick in TICKS if tick < 50]
 """Ticks that take most of the time."""
 
-every_tick = pytest.mark.parametrize("tick", [*FINE, *(tick for tick in TICKS if tick >= 40)])
+every_tick = pytest.mark.parametrize("tick", [*FINE, *(tick for tick in TICKS if tick >= 50)])
 every_program = pytest.mark.parametrize("name", NAMES)
 
 

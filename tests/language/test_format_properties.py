@@ -20,6 +20,16 @@ FILES = [
     *sorted((ROOT / "programs").rglob("*.dat")),
     *sorted((ROOT / "tests" / "language" / "data").glob("*.irl")),
 ]
+
+
+def every_other(first):
+    """The files for `parametrize`; those between every other one, from `first` on, are marked slow."""
+    return [
+        pytest.param(path, marks=pytest.mark.slow if (place - first) % 2 else ())
+        for place, path in enumerate(FILES)
+    ]
+
+
 RELAXED = settings(suppress_health_check=list(HealthCheck), deadline=None, derandomize=True)
 
 
@@ -78,7 +88,7 @@ def out_of_order(text):
 
 
 @pytest.mark.req("LANG-74")
-@pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
+@pytest.mark.parametrize("path", every_other(0), ids=lambda path: path.name)
 @settings(RELAXED, max_examples=2)
 @given(data=st.data())
 def test_programs_with_other_blanks_and_more_comments(path, data):
@@ -100,7 +110,7 @@ def judge_with_other_blanks(path, data):
 
 
 @pytest.mark.req("LANG-74")
-@pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
+@pytest.mark.parametrize("path", every_other(1), ids=lambda path: path.name)
 @settings(RELAXED, max_examples=2)
 @given(data=st.data())
 def test_blanks_alone_do_not_show(path, data):

@@ -25,7 +25,7 @@ def test_ptp_to_a_pose_that_puts_a_joint_on_its_limit(kit) -> None:
 
 
 def test_line_that_puts_a_joint_on_its_limit_within_one_tick(kit) -> None:
-    for seed in range(200):
+    for seed in range(100):
         shop, position = meeting_the_limit(kit, seed, 0.05)
         rows = shop.line(position + np.array([0.3, 0.0, 0.0]), speed=1.0, acc=9.0)
         assert np.max(rows.q[:, 0]) == shop.limits.position_upper[0], f"seed {seed}"

@@ -237,7 +237,7 @@ def checked(kit, seed: int) -> int:
     return KNOWN[seed]
 
 
-@pytest.mark.parametrize("seed", first(14, SEEDS))
+@pytest.mark.parametrize("seed", first(8, SEEDS))
 def test_drawn_chains_keep_every_bound(kit, seed) -> None:
     checked(kit, seed)
 

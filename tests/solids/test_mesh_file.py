@@ -10,6 +10,7 @@ from irlx.cell.robot_data import robot_data_folder
 from irlx.solids.mesh_file import MeshFileError, MeshReaderMissing, read_closed_mesh, read_mesh
 from irlx.solids.shape import Mesh
 from irlx.solids.triangles import Triangles
+from long_run import first
 from mesh_files import CUBE, QUADS, TRIANGLES, WRITERS, dae, obj, stl
 
 pytestmark = pytest.mark.req("CELL-06")
@@ -185,7 +186,7 @@ def test_open_edges_of_random_patches_are_counted_as_by_hand():
 
 
 @pytest.mark.skipif(robot_data_folder() is None, reason="the data package is missing")
-@pytest.mark.parametrize("robot", ["panda", "tiago", "ur", "z1"])
+@pytest.mark.parametrize("robot", first(2, ["panda", "ur", "tiago", "z1"]))
 def test_the_same_bounds_as_coal_reads(robot):
     """coal reads meshes by assimp, in C++."""
     import coal
