@@ -25,7 +25,7 @@ BINDING = FRANKA + "speed = [10, 15, 12, 124, 149, 149, 149]\n"
 PLANES = [(1.0, 0.0, 0.0), (0.8, 0.0, 0.6), (0.6, 0.5, 0.2)]
 ROUNDS, RADIUS, RAMP_TIME = 5, 0.13, 0.2
 
-QUICK = [(PLANES[0], NO_ACCELERATION, 4.0), (PLANES[1], FRANKA, 4.0), (PLANES[2], NO_ACCELERATION, 4.0)]
+QUICK = [(PLANES[0], NO_ACCELERATION, 4.0), (PLANES[1], FRANKA, 10.0), (PLANES[2], NO_ACCELERATION, 10.0)]
 """Planes, limits and ticks of the default run."""
 SLOW = pytest.mark.slow
 needs_panda = pytest.mark.skipif(robot_data_folder() is None, reason='pip install "irlx[robots]"')
@@ -89,7 +89,7 @@ def governed(run: irlx.Run) -> np.ndarray:
         pytest.param(axis, limits, tick, marks=() if (axis, limits, tick) in QUICK else SLOW)
         for axis in PLANES
         for limits in (NO_ACCELERATION, FRANKA)
-        for tick in (1.0, 4.0)
+        for tick in (1.0, 4.0, 10.0)
     ],
 )
 def test_five_circles_close_from_the_first_on(tmp_path, axis, limits: str, tick: float) -> None:

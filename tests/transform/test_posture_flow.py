@@ -68,10 +68,10 @@ def assert_even(points):
 @pytest.mark.parametrize(
     ("name", "seeds"),
     [
-        ("arm7", range(12)),
-        ("koch11", range(5)),
-        pytest.param("arm7", range(12, 70), marks=pytest.mark.slow),
-        pytest.param("koch11", range(5, 20), marks=pytest.mark.slow),
+        ("arm7", range(8)),
+        ("koch11", range(3)),
+        pytest.param("arm7", range(8, 70), marks=pytest.mark.slow),
+        pytest.param("koch11", range(3, 20), marks=pytest.mark.slow),
     ],
 )
 def test_random_postures(name, seeds, request):
@@ -94,7 +94,7 @@ def test_random_postures(name, seeds, request):
 
 
 @pytest.mark.req("TRF-15")
-@pytest.mark.parametrize("seeds", first(1, [range(16), range(16, 56)]), ids=str)
+@pytest.mark.parametrize("seeds", first(1, [range(8), range(8, 56)]), ids=str)
 def test_six_joints_with_a_way_to_spare_use_it(arm7, seeds):
     """The elbow frozen, between a spherical shoulder and wrist; other joints on their limits now and then."""
     arm, free = arm7, np.arange(7) != 3
@@ -113,7 +113,7 @@ def test_six_joints_with_a_way_to_spare_use_it(arm7, seeds):
 
 
 @pytest.mark.req("TRF-15")
-@pytest.mark.parametrize("seeds", first(1, [range(6), range(6, 20)]), ids=str)
+@pytest.mark.parametrize("seeds", first(1, [range(3), range(3, 20)]), ids=str)
 def test_a_posture_on_the_fibre_is_reached_to_the_last_bit(arm, seeds):
     free = np.ones(arm.n, dtype=bool)
     for seed in seeds:
@@ -149,7 +149,7 @@ def test_nothing_moves_towards_the_present_posture(arm, residue):
     assert flow.points[0].tobytes() == arm.q.tobytes()
 
 
-@pytest.mark.parametrize("count", [2, pytest.param(8, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [1, pytest.param(8, marks=pytest.mark.slow)])
 def test_the_end_does_not_depend_on_the_qp_solver(arm, count):
     rng = np.random.default_rng(21)
     for _ in range(count):
@@ -198,7 +198,7 @@ def test_narrow_limits_hold_and_are_left(arm):
         assert_good(arm, arm.q, konf, np.ones(arm.n, dtype=bool), flow, lower, upper)
 
 
-@pytest.mark.parametrize("far", [1e2, 1e5, 1e300])
+@pytest.mark.parametrize("far", [1e2, pytest.param(1e5, marks=pytest.mark.slow), 1e300])
 def test_a_posture_far_beyond_everything(arm, far):
     """Only the direction counts; the flow ends, within the limits, and says what is left."""
     konf = far * np.random.default_rng(3).normal(size=arm.n)
@@ -285,7 +285,7 @@ def test_an_elbow_on_its_limit_holds_nobody(arm7, side):
     assert pose_errors(arm7, arm7.q, flow.points).max() <= ON_POSE
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", first(2, range(4)))
 def test_a_coarse_flow_is_the_same_but_for_the_last_digits(arm, seed):
     print("seed", seed)
     rng = np.random.default_rng(seed)
