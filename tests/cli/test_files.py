@@ -14,7 +14,7 @@ import pytest
 import irlx
 from irlx.cli.main import main
 
-CELL = '[robot]\nmodel = "arm7"\n[motion]\ntick_ms = 10\n'
+CELL = '[robot]\nmodel = "arm7"\n[motion]\ntick_ms = 20\n'
 LOGGING = """PROGRAM p;
 VAR
   FILE: log;

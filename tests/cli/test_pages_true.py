@@ -57,7 +57,7 @@ position = [180, [-150, 0], [-180, 0], [0, 180], [-180, 0], [-180, 0], 180, 60, 
 speed = [100, 100, 100, 100, 100, 100, 100, 100, 100, 1000, 100]
 acceleration = [500, 500, 500, 500, 500, 500, 500, 500, 500, 5000, 500]
 [motion]
-tick_ms = 50
+tick_ms = 100
 """
 FINE = {"IRL436"}
 """Codes of what ticks of 50 ms would not show."""
@@ -79,7 +79,7 @@ def fence(text, kind):
 
 def diagnostics_of(folder, text, motion=False, fine=False):
     """What check, with its dry run for `motion`, and run say of program and cell in a section of a page."""
-    plain = PLAIN_CELL.replace("tick_ms = 50", "tick_ms = 20") if fine else PLAIN_CELL
+    plain = PLAIN_CELL.replace("tick_ms = 100", "tick_ms = 20") if fine else PLAIN_CELL
     program, cell = folder / "demo.irl", folder / "demo.toml"
     if fence(text, "dat"):
         (folder / "points.dat").write_text(fence(text, "dat"), encoding="utf-8")

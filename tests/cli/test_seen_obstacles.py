@@ -57,7 +57,7 @@ members = ["Ball", "post"]
 """
 
 
-def files(folder: Path, program: str = LINE, tick: int = 10, post=(5000, 0, 0)) -> Path:
+def files(folder: Path, program: str = LINE, tick: int = 20, post=(5000, 0, 0)) -> Path:
     (folder / "ball.toml").write_text(CELL.format(tick=tick, post=list(post)), encoding="utf-8")
     (folder / "ball.irl").write_text(program, encoding="utf-8")
     return folder / "ball.irl"
@@ -376,7 +376,7 @@ def test_balls_at_random_cost_no_limit_and_no_path(tmp_path, robot, seed):
         cell += "[robot.limits]\nacceleration = [100, 100, 100, 100, 100, 100, 100, 200, 200, 2000, 200]\n"
     cell = cell.replace("xyz = [149, -600, 660]", "xyz = [0, 0, -9000]")
     (tmp_path / "ball.toml").write_text(cell, encoding="utf-8")
-    program = LINE.replace("MOVE_INC LIN POSITION(0, 160, 0) SPEED := 30", "WAIT 3 SEC")
+    program = LINE.replace("MOVE_INC LIN POSITION(0, 160, 0) SPEED := 30", "WAIT 1.5 SEC")
     (tmp_path / "ball.irl").write_text(program, encoding="utf-8")
     job = prepare(tmp_path / "ball.irl")
     at, _ = forward(job.cell.robot, job.cell.start[None])

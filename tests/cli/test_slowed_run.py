@@ -22,6 +22,8 @@ BEGIN
   MOVE PTP back;
 ENDPROGRAM
 """
+ONE_MOVE = "".join(PROGRAM.splitlines(keepends=True)[:5]) + "ENDPROGRAM\n"
+"""Its line alone, for what one slowed move tells."""
 CELL = """[robot]
 model = "koch11"
 [robot.limits]
@@ -42,6 +44,12 @@ def place(tmp_path, monkeypatch):
     (tmp_path / "p.toml").write_text(CELL, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     return tmp_path
+
+
+@pytest.fixture
+def shorter(place):
+    (place / "p.irl").write_text(ONE_MOVE, encoding="utf-8")
+    return place
 
 
 @pytest.fixture(scope="module")
@@ -121,7 +129,7 @@ def test_the_terminal_tells_it(place, capsys):
     assert any(line.startswith("            line 5  ") and " of 1000 mm/s " in line for line in places)
 
 
-def test_json_has_the_events(place, capsys):
+def test_json_has_the_events(shorter, capsys):
     assert main(["run", "p.irl", "-o", "out.npz", "--json", "--explain-tick", "24"]) == 0
     plain = json.loads(capsys.readouterr().out)
     (first, *_) = plain["summary"]["slowed"]
@@ -131,9 +139,9 @@ def test_json_has_the_events(place, capsys):
     assert len(plain["tick"]["joints"]) == 11
 
 
-def test_a_tick_is_explained(run, place):
+def test_a_tick_is_explained(run, shorter):
     tick = 24
-    found = irlx.run(place / "p.irl", explain_tick=tick).explanation
+    found = irlx.run(shorter / "p.irl", explain_tick=tick).explanation
     assert (found.tick, found.line, found.motion) == (tick, 5, "MOVE LIN")
     assert found.way_of_pacing == "row of a motion planned as a whole"
     np.testing.assert_array_equal([joint.value for joint in found.joints], run.q[tick])
@@ -158,7 +166,7 @@ def test_ticks_without_a_path_are_explained_too(run, place, block, motion):
     assert [joint.value for joint in found.joints] == list(run.q[tick])
 
 
-def test_explained_on_the_terminal(place, capsys):
+def test_explained_on_the_terminal(shorter, capsys):
     assert main(["run", "p.irl", "-o", "out.npz", "--explain-tick", "24"]) == 0
     text = capsys.readouterr().out
     assert text.startswith("tick 24 (1.2 s), line 5: MOVE LIN, row of a motion planned as a whole\n")
@@ -168,15 +176,15 @@ def test_explained_on_the_terminal(place, capsys):
     assert "tick 100000: no motion has it" in capsys.readouterr().out
 
 
-def test_too_slow_is_an_error_where_the_user_says_so(place, capsys):
+def test_too_slow_is_an_error_where_the_user_says_so(shorter, capsys):
     assert main(["run", "p.irl", "-o", "out.npz", "--max-slow", "1.05"]) == 1
     error = capsys.readouterr().err
     assert "p.irl:5:3: error IRL525" in error
     assert "1.05 times is allowed" in error
-    assert irlx.run(place / "p.irl", max_slow=50.0).complete
+    assert irlx.run(shorter / "p.irl", max_slow=50.0).complete
     with pytest.raises(irlx.RunError, match="IRL525"):
-        irlx.run(place / "p.irl", max_slow=1.0)
+        irlx.run(shorter / "p.irl", max_slow=1.0)
     with pytest.raises(irlx.IrlxError, match="IRL006"):
-        irlx.run(place / "p.irl", max_slow=0.9)
+        irlx.run(shorter / "p.irl", max_slow=0.9)
     with pytest.raises(irlx.IrlxError, match="IRL525"):
-        list(irlx.stream(place / "p.irl", max_slow=1.05))
+        list(irlx.stream(shorter / "p.irl", max_slow=1.05))
