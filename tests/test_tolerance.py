@@ -267,6 +267,15 @@ def test_the_verifier_finds_a_band_passed(run, tmp_path, bands: tuple[int, ...],
     assert "tolerance bands" in {check.name for check in report.failed}
 
 
+def test_the_verifier_finds_the_place_on_several_rounds(run) -> None:
+    """Beside two rounds of 10 mm the bands leave a place between two narrow hollows."""
+    cell = CELL.replace("locked = { rail_joint = 150 }\nstart = [8", "start = [0, 8")
+    cell = cell.replace("[robot.limits]\nacceleration = [400, 400, 500, 900, 900, 1200]\n", "")
+    ends = f"{HERE} + POSITION(0, 10, 10), {HERE} + POSITION(0, 20, 0)"
+    # Verified by the fixture.
+    run(f"MOVE CIRCLE {ends} ANGLE := 720 WITH TOLERANCE (1, 1, 1, 0, 0, 0);\n", cell)
+
+
 def still(q: np.ndarray) -> np.ndarray:
     """Rows of a robot that stays where it is."""
     return np.repeat(q[:1], len(q), axis=0)

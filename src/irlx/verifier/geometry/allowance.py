@@ -21,7 +21,7 @@ SETTLED = 1e-13
 MET = 1e-10
 """What may be left beyond the bands, m or rad, before a place is sought with more care .."""
 
-GRID, HOLLOWS, SECTIONS, GOLDEN = 128, 3, 70, 0.5 * (5.0**0.5 - 1.0)
+GRID, HOLLOWS, SECTIONS, GOLDEN = 512, 3, 70, 0.5 * (5.0**0.5 - 1.0)
 """.. among so many places, from so many of them on, by so many golden sections."""
 
 ASIDE = 1e-8
