@@ -60,9 +60,9 @@ def reconfigured(
 ) -> Reconfigured:
     """Motion from rest at posture q (n,) along the fibre of its tool pose to konf (n,) or the nearest to it.
 
-    Joints without a speed limit move with the block's `speed_ori` (turns) or `speed` (slides), those without
-    an acceleration limit reach their speed in 0.2 s; a joint with a limit of 0 stays. Raises MotionError,
-    IRL425, where it would take too long.
+    Joints without a speed limit move with the block's `speed_ori` (turns) or `speed` (slides), as far as its
+    override lets them, those without an acceleration limit reach their speed in 0.2 s; a joint with a limit
+    of 0 stays. Raises MotionError, IRL425, where it would take too long.
     """
     limits = working_limits(model, block)
     free = model.free & (_either_way(limits, "speed") > 0.0) & (_either_way(limits, "acceleration") > 0.0)
@@ -77,7 +77,8 @@ def reconfigured(
 def working_limits(model: Model, block: ReconfigureBlock) -> JointLimits:
     """The limits in force, with a speed and an acceleration also for joints that have none."""
     axes = model.kinematics.description.axes
-    usual = np.array([block.law.speed if axis.is_prismatic else block.law.speed_ori for axis in axes])
+    law = block.law
+    usual = law.override * np.array([law.speed if axis.is_prismatic else law.speed_ori for axis in axes])
     limits = model.limits
     lower, upper = limits.pair("speed")
     limits = limits.with_pair("speed", *_known(lower, upper, usual))
