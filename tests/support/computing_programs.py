@@ -154,8 +154,8 @@ class Author:
             found = self.designator(scope, kind, scope.variables, depth)
             if found:
                 return found, PRIMARY
-        if kind == "int" and pick.random() < 0.1:
-            return pick.choice(EDGES[2:]), PRIMARY
+        if kind == "int" and pick.random() < 0.15:
+            return pick.choice(EDGES), PRIMARY
         text = pick.choice(LITERALS[kind]) if kind in LITERALS else NAMED[kind]
         return (
             (text, SIGNED if text[0] == "-" else PRIMARY)
