@@ -5,7 +5,7 @@ ticks     ticks of the inverse transform, against optimisers and conditions of a
 laws      time laws of moves, against integration and closed forms
 
 Seeds are those of the tests with the same cases. A case that differs is printed with its seed, and the
-command ends with 1.
+command ends with 1; Ctrl-C ends it with what was found so far.
 """
 
 from __future__ import annotations
@@ -41,14 +41,18 @@ def main() -> int:
     judged, started = judge_of(given.kind), time.process_time()
     ends: Counter[str] = Counter()
     different = 0
-    for seed in range(given.first, given.first + given.count):
-        end, differences = judged(seed)
-        ends[end] += 1
-        if differences:
-            different += 1
-            print(f"seed {seed}, {end}:", *differences, sep="\n  ", flush=True)
+    try:
+        for seed in range(given.first, given.first + given.count):
+            end, differences = judged(seed)
+            ends[end] += 1
+            if differences:
+                different += 1
+                print(f"seed {seed}, {end}:", *differences, sep="\n  ", flush=True)
+    except KeyboardInterrupt:
+        print("interrupted")
     spent = time.process_time() - started
-    print(f"seeds {given.first} to {given.first + given.count - 1}: {spent:.0f} s of processor time")
+    last = given.first + sum(ends.values()) - 1
+    print(f"seeds {given.first} to {last}: {spent:.0f} s of processor time")
     print("ends: " + ", ".join(f"{count} {end}" for end, count in ends.most_common()))
     print(f"different: {different}")
     return 1 if different else 0
