@@ -39,7 +39,7 @@ def motion_codes(found: list[irlx.Diagnostic]) -> list[tuple[int, str]]:
 
 @pytest.fixture
 def slow(tmp_path: Path) -> Path:
-    (tmp_path / "slow.toml").write_text('[robot]\nmodel = "arm7"\n')
+    (tmp_path / "slow.toml").write_text('[robot]\nmodel = "arm7"\n[motion]\ntick_ms = 20\n')
     (tmp_path / "slow.irl").write_text(SLOW)
     return tmp_path / "slow.irl"
 

@@ -112,7 +112,7 @@ SENSORS = {
 
 @pytest.fixture
 def run(tmp_path: Path):
-    def make(name: str, sensor, tick: int = 10) -> Corrected:
+    def make(name: str, sensor, tick: int = 20) -> Corrected:
         path = files(tmp_path, PROGRAMS[name].replace("; ", ";\n"), ARM.format(tick=tick), DECLARED)
         return corrected(path, sensor, TOOLS.get(name))
 
@@ -164,7 +164,7 @@ def test_koch11_campaign(tmp_path, sensor):
     corrected(square(tmp_path, 10), SENSORS.get(sensor) or white())
 
 
-@pytest.mark.parametrize("tick", [1, 10])
+@pytest.mark.parametrize("tick", [pytest.param(1, marks=pytest.mark.slow), 2, 10])
 def test_a_small_correction_is_reached_exactly(run, tick):
     found = run("moves", SENSORS["constant"], tick)
     reached = np.all(found.correction == [0.001, 0.0005, 0, 0, 0, 0.002], axis=1)

@@ -64,7 +64,7 @@ def margin(problem) -> float:
 @pytest.mark.parametrize("n", SIZES)
 def test_compact_and_full_problem_give_the_same_step(making, n: int) -> None:
     compared = bounded = 0
-    for seed in range(300):
+    for seed in range(200):
         problem = making.random_step_problem(seed, n)
         found, wanted = compact(problem), full_qp(problem)
         if found is None or wanted is None:

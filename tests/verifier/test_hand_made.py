@@ -15,6 +15,8 @@ import irlx
 from irlx.cli.main import main
 from irlx.streams import read_stream
 
+pytestmark = pytest.mark.usefixtures("read_once")
+
 SCRIPT = Path(hand_made.__file__)
 NUMBER = re.compile(r"-?\d+\.\d+(?:e[+-]\d+)?")
 

@@ -38,11 +38,19 @@ class RobotOverview:
     about: str
 
 
+def robot_names() -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Names of the robots packaged with irlx and of the others that a cell may name, without reading them."""
+    folders = (_ROBOTS, ".urdf"), (_ROBOTS / "external", ".toml")
+    packaged, others = (
+        tuple(sorted(entry.name[:-5] for entry in folder.iterdir() if entry.name.endswith(ending)))
+        for folder, ending in folders
+    )
+    return packaged, others
+
+
 def robot_overviews() -> tuple[RobotOverview, ...]:
     """All robots that a cell may name, those packaged with irlx first."""
-    packaged = sorted(entry.name[:-5] for entry in _ROBOTS.iterdir() if entry.name.endswith(".urdf"))
-    external = _ROBOTS / "external"
-    others = sorted(entry.name[:-5] for entry in external.iterdir() if entry.name.endswith(".toml"))
+    packaged, others = robot_names()
     return (*map(_packaged, packaged), *map(_external, others))
 
 

@@ -105,9 +105,9 @@ def _codes() -> list[str]:
 
 
 def _robots() -> list[str]:
-    from irlx.cell.overview import robot_overviews
+    from irlx.cell.overview import robot_names
 
-    return [robot.name for robot in robot_overviews()]
+    return [name for group in robot_names() for name in group]
 
 
 _WORDS: Mapping[str, Callable[[], list[str]]] = {"CODE": _codes, "ROBOT": _robots, "robots NAME": _robots}

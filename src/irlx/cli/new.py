@@ -104,11 +104,11 @@ def _model(options: argparse.Namespace) -> str:
 
 def known_robot(name: str) -> str:
     """The name of a robot that irlx knows. Raises IrlxError, IRL006, for any other."""
-    from irlx.cell.overview import robot_overviews
+    from irlx.cell.overview import robot_names
     from irlx.diagnostics import IrlxError, report
     from irlx.diagnostics.diagnostic import near_matches
 
-    names = tuple(robot.name for robot in robot_overviews())
+    names = tuple(known for group in robot_names() for known in group)
     if name not in names:
         cause = f"no robot has this name{near_matches(name, names)}"
         helps = "irlx robots lists all names"
