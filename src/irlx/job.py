@@ -22,6 +22,7 @@ from irlx.cell.input_file import read_input_file
 from irlx.cell.load import load_cell
 from irlx.cell.made_constraints import constrained
 from irlx.diagnostics import IrlxError, report
+from irlx.diagnostics.whole_file import whole_file
 from irlx.interpreter.channels.pieces import InputGiven
 from irlx.interpreter.channels.setup import ChannelSetup
 from irlx.interpreter.interpret import MAX_STEPS
@@ -173,7 +174,7 @@ def _channels(
 def sha256_of(path: Path) -> str:
     """SHA-256, hexadecimal, of the bytes of a file that has just been read; '' where it is gone by now."""
     try:
-        return hashlib.sha256(path.read_bytes()).hexdigest()
+        return hashlib.sha256(whole_file(path)).hexdigest()
     except OSError:
         return ""
 

@@ -16,6 +16,7 @@ from irlx.cell.frame_names import cell_table, frame_names
 from irlx.cell.obstacle_names import obstacle_names
 from irlx.diagnostics import Diagnostic, IrlxError, Place, SourceText, Span, report
 from irlx.diagnostics.near_files import near_files
+from irlx.diagnostics.whole_file import whole_file
 from irlx.language import tree
 from irlx.language.analysis import Analysis, CellJoints, CellNames, DataListResolver, analyse
 from irlx.language.data_lists import ImportedList
@@ -45,7 +46,7 @@ class DataListFile(ImportedList):
     def is_as_read(self) -> bool:
         """Whether the file still holds the very bytes that were read."""
         try:
-            return hashlib.sha256(self.path.read_bytes()).hexdigest() == self.sha256
+            return hashlib.sha256(whole_file(self.path)).hexdigest() == self.sha256
         except OSError:
             return False
 
@@ -233,7 +234,7 @@ class _ListFiles:
         """Text of the data list of a name. Raises IrlxError: IRL240, IRL241 at `place`, IRL130, IRL131."""
         path = self._program.with_name(f"{name}.dat")
         try:
-            content = path.read_bytes()
+            content = whole_file(path)
         except FileNotFoundError:
             raise IrlxError(report("IRL240", place, name=name, path=path, near=near_files(path))) from None
         except (OSError, ValueError) as cause:
@@ -270,7 +271,7 @@ class _Beside:
             raise ModuleProblem("IRL260", module=name, files=circle)
         if path not in self._done:
             try:
-                content = path.read_bytes()
+                content = whole_file(path)
             except FileNotFoundError:
                 return None
             except (OSError, ValueError) as cause:
@@ -373,7 +374,7 @@ def _why_no_program(analysis: Analysis) -> tuple[Diagnostic, ...]:
 def read_file(path: Path) -> bytes:
     """Content of a file. Raises ProgramError: IRL001 where there is none, IRL007 for a folder, IRL002."""
     try:
-        return path.read_bytes()
+        return whole_file(path)
     except FileNotFoundError:
         raise ProgramError(report("IRL001", path=path, near=near_files(path))) from None
     except IsADirectoryError:

@@ -27,6 +27,7 @@ from irlx.cell.errors import CellError
 from irlx.cell.find import find_cell
 from irlx.diagnostics import Diagnostic, IrlxError, Place, SourceText, Span, report
 from irlx.diagnostics.diagnostic import near_matches
+from irlx.diagnostics.whole_file import whole_file
 from irlx.language.source import decode_source
 from irlx.language.suppression import Ignore
 from irlx.pacing.inputs import Inputs
@@ -206,7 +207,7 @@ def text_beside(path: Path, header: StreamHeader) -> SourceText | None:
         return None
     file = path.with_name(header.program_name) if header.program_name else path
     try:
-        content = file.read_bytes()
+        content = whole_file(file)
         if hashlib.sha256(content).hexdigest() != header.program_sha256:
             return None
         return decode_source(str(file), content)

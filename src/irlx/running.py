@@ -113,8 +113,9 @@ def record(
     page that replays the run; all else as in `run`. The files appear
     at the end, whole. Of a program that ends in an error, and after Ctrl-C, what was executed appears beside
     them as `NAME.partial.ENDING`, marked incomplete. The program itself cannot write these files. Raises what
-    `run` raises, and StreamError: IRL003 where a file cannot be written, IRL004 for an unknown ending, IRL005
-    where an input would be overwritten.
+    `run` raises, and before anything moves StreamError: IRL003 where a file cannot be written, IRL004 for an
+    unknown ending, IRL005 where an input would be overwritten. A file that cannot be written any more later on
+    is a RunError; where it is known only at the end, its `run` is complete, and its `files` those that appeared.
     """
     channels = files, input, output
     job = prepare(program, cell, tick_ms, max_slow, max_steps, inputs, *channels, pause_s)
@@ -194,10 +195,16 @@ def _finished(
     except IrlxError as error:
         known = _told(execution)
         partial = finish(False, (*known, *error.diagnostics))
-        raise RunError((*error.diagnostics, *known), partial) from error
+        unwritten = (d for d in partial.diagnostics if d.is_error and d not in error.diagnostics)
+        raise RunError((*error.diagnostics, *unwritten, *known), partial) from error
     except KeyboardInterrupt as interrupt:
-        raise RunInterrupted(finish(False, _told(execution))) from interrupt
-    return finish(True, _told(execution))
+        also = interrupt.__context__
+        failed = also.diagnostics if isinstance(also, IrlxError) else ()
+        raise RunInterrupted(finish(False, (*_told(execution), *failed))) from interrupt
+    finished = finish(True, _told(execution))
+    if any(found.is_error for found in finished.diagnostics):
+        raise RunError(finished.diagnostics, finished)
+    return finished
 
 
 def replay_source(job: Job) -> ReplaySource:

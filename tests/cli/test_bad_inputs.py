@@ -224,9 +224,28 @@ def test_a_program_with_the_ending_of_a_stream_is_taken_for_one(inside, folder, 
     assert names(folder) == ["p.irdata", "p.toml"]
 
 
+@pytest.mark.req("QA-09")
 @pytest.mark.parametrize(
-    "arguments", [["convert"], ["verify"], ["run"], ["run", "p.irl", "--tick", "fast"], ["completion", "cmd"]]
+    ("arguments", "words"),
+    [
+        (["run", "p.irl", "--tick", "fast"], "--tick fast: a number is expected"),
+        (["run", "p.irl", "--tick="], "--tick '': a number is expected"),
+        (["run", "p.irl", "--max-steps", "1e6"], "--max-steps 1e6: a whole number is expected"),
+        (["completion", "fis"], "shell fis: not one of bash, zsh, fish, tcsh; did you mean 'fish'?"),
+        (
+            ["convert", "p.csv", "-o", "a", "--to", "kuka"],
+            "--to kuka: not one of urscript, krl, rapid, robodk",
+        ),
+    ],
 )
+def test_values_of_another_kind(inside, arguments, words):
+    done = inside(*arguments)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith(f"error IRL006: {words}")
+    assert f"help: irlx {arguments[0]} --help has examples\n" in done.stderr
+
+
+@pytest.mark.parametrize("arguments", [["convert"], ["verify"], ["run"], ["run", "p.irl", "--tick"]])
 def test_usage_errors(capsys, arguments):
     with pytest.raises(SystemExit) as caught:
         main(arguments)

@@ -2,12 +2,13 @@
 
 import json
 import os
+from itertools import count
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from irlx.streams import KNOWN_ENDINGS, JointStream, StreamError, read_stream, write_stream
+from irlx.streams import KNOWN_ENDINGS, JointStream, StreamError, atomic, read_stream, write_stream
 from irlx.streams.atomic import AtomicFile, check_writable
 from irlx.streams.header_plain import header_to_plain
 from stream_files import FOLDERS, content_of
@@ -204,3 +205,18 @@ def test_whether_a_path_is_writable_is_known_beforehand(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
     with pytest.raises(StreamError, match="IRL003"):
         check_writable(tmp_path / "missing" / "a.irdata")
+
+
+@pytest.mark.req("QA-09")
+@pytest.mark.parametrize("ending", [".csv", ".npz", ".rosbag"])
+def test_what_a_killed_process_of_this_number_has_left_is_in_nobodys_way(
+    ending: str, good: JointStream, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In a container most processes have the same few numbers."""
+    monkeypatch.setattr(atomic, "_NUMBERS", count(1))
+    left = tmp_path / f".irlx-{os.getpid()}-1.part{ending}"
+    left.write_text("left")
+    write_stream(good, tmp_path / f"a{ending}")
+    assert read_stream(tmp_path / f"a{ending}").complete
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == [left.name, f"a{ending}"]
+    assert left.read_text() == "left"

@@ -309,13 +309,38 @@ def test_a_bag_that_cannot_be_put_in_place_leaves_the_one_before(
 ) -> None:
     write_stream(good, tmp_path / "a.rosbag")
     before = content_of(tmp_path / "a.rosbag")
+    rename, failed = Path.rename, []
 
-    def fail(*_: object) -> None:
-        raise OSError(5, "Input/output error")
+    def fail(path: Path, target: Path) -> Path:
+        # The one before has got another name by then.
+        if not target.exists() and not failed:
+            failed.append(path)
+            raise OSError(5, "Input/output error")
+        return rename(path, target)
 
-    monkeypatch.setattr(shutil, "move", fail)
+    monkeypatch.setattr(Path, "rename", fail)
     assert "input/output error" in refusal(good, tmp_path / "a.rosbag")
     assert {path.name: content_of(path) for path in tmp_path.iterdir()} == {"a.rosbag": before}
+
+
+def test_two_processes_that_write_the_same_bag(
+    good: JointStream, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Another bag appears between the look at the place and the renaming: it is not written into."""
+    path, rename, others = tmp_path / "a.rosbag", Path.rename, []
+
+    def meanwhile(own: Path, target: Path) -> Path:
+        if target == path and len(others) < 2:
+            others.append(own)
+            shutil.copytree(own, path) if not path.exists() else shutil.rmtree(path)
+        return rename(own, target)
+
+    monkeypatch.setattr(Path, "rename", meanwhile)
+    write_stream(good, path)
+    write_stream(good, path)
+    assert len(others) == 2
+    assert [entry.name for entry in tmp_path.iterdir()] == ["a.rosbag"]
+    assert read_stream(path).complete
 
 
 def test_a_link_to_a_bag_is_followed(good: JointStream, tmp_path: Path) -> None:

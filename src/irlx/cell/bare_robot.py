@@ -12,6 +12,7 @@ from irlx.cell.model import load_robot, with_packaged_defaults, without_absent_j
 from irlx.cell.named import robot_names
 from irlx.cell.schema import RobotSection
 from irlx.diagnostics import Diagnostic
+from irlx.diagnostics.whole_file import whole_text
 from irlx.robot.description import COORDINATES, RobotDescription
 from irlx.robot.limits import JointLimits
 from irlx.robot.urdf import read_urdf
@@ -65,7 +66,7 @@ def _suggested(asked: RobotSection, folder: Path) -> SuggestedTask | None:
     None as well for a URDF that cannot be used: what is wrong with it is told when it is loaded.
     """
     try:
-        robot = read_urdf((folder / (asked.model or "")).read_text(encoding="utf-8"), asked.tip)
+        robot = read_urdf(whole_text(folder / (asked.model or "")), asked.tip)
     except (OSError, ValueError):
         return None
     if not 0 < len(robot.axes) < len(COORDINATES):

@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import Any, Protocol
 from unicodedata import normalize
 
+from irlx.diagnostics.whole_file import whole_file
+
 if sys.version_info >= (3, 11):
     import tomllib
 else:
@@ -39,7 +41,8 @@ def frame_names(path: Path) -> Mapping[str, bool] | None:
 def cell_table(file: Readable) -> dict[str, Any]:
     """A cell file as a table, empty where it is none."""
     try:
-        table: dict[str, Any] = tomllib.loads(file.read_bytes().decode("utf-8-sig"))
+        content = whole_file(file) if isinstance(file, Path) else file.read_bytes()
+        table: dict[str, Any] = tomllib.loads(content.decode("utf-8-sig"))
     except (OSError, ValueError, RecursionError):
         return {}
     return table

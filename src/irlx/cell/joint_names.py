@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from irlx.cell.frame_names import cell_table
+from irlx.diagnostics.whole_file import whole_text
 from irlx.robot.urdf import read_urdf
 
 _ROBOTS = files("irlx.cell") / "robots"
@@ -38,7 +39,7 @@ def _model(model: str, folder: Path) -> tuple[dict[str, Any], str]:
     Raises OSError where there is none.
     """
     if "/" in model or "." in model:
-        return {}, (folder / model).read_text(encoding="utf-8")
+        return {}, whole_text(folder / model)
     packaged = _ROBOTS / f"{model}.toml"
     if packaged.is_file():
         return _robot_table(packaged), (_ROBOTS / f"{model}.urdf").read_text(encoding="utf-8")

@@ -13,6 +13,7 @@ from irlx.cell.read import read_cell_file
 from irlx.cell.schema import CellFile, RobotSection
 from irlx.diagnostics import Place, report
 from irlx.diagnostics.near_files import near_files
+from irlx.diagnostics.whole_file import whole_file
 
 
 def load_cell(path: Path) -> Cell:
@@ -39,7 +40,7 @@ def _built(content: CellFile, file: str, folder: Path) -> Cell:
 def read_bytes(path: Path) -> bytes:
     """Bytes of a cell file. Raises CellError: IRL001 missing, IRL002 unreadable, IRL007 a folder."""
     try:
-        return path.read_bytes()
+        return whole_file(path)
     except FileNotFoundError as cause:
         raise CellError(report("IRL001", path=path, near=near_files(path))) from cause
     except IsADirectoryError as cause:

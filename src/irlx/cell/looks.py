@@ -10,6 +10,7 @@ from irlx.cell.cell import Cell
 from irlx.cell.link_meshes import find_mesh
 from irlx.cell.named import named_urdf, robot_names, urdf_folder
 from irlx.diagnostics import IrlxError, Place
+from irlx.diagnostics.whole_file import whole_text
 from irlx.robot.link_visuals import Visual, link_visuals
 from irlx.robot.urdf import read_urdf
 from irlx.solids.placement import Vector3
@@ -61,7 +62,7 @@ def robot_looks(cell: Cell) -> RobotLooks:
 def _urdf(cell: Cell, folder: Path) -> str:
     if cell.model in robot_names():
         return named_urdf(cell.model, Place(cell.file, key="robot.model"))
-    return (folder / cell.model).read_text(encoding="utf-8")
+    return whole_text(folder / cell.model)
 
 
 def _with_file(visual: Visual, folder: Path | None) -> Visual | str:

@@ -18,6 +18,7 @@ from irlx.cell.schema import RobotSection, Section, SelfCollisionSection
 from irlx.cell.task import with_origins, with_task
 from irlx.diagnostics import Place, report
 from irlx.diagnostics.diagnostic import near_matches
+from irlx.diagnostics.whole_file import whole_text
 from irlx.robot.description import RobotDescription
 from irlx.robot.urdf import read_urdf
 from irlx.robot.urdf_values import RobotModelError
@@ -196,6 +197,6 @@ def _urdf_file(model: str, folder: Path, place: Place) -> str:
         tried = "" if not looks_like_a_path else f" (looked for {path})"
         raise CellError(report("IRL611", place, model=model, tried=tried, near=near, **_known()))
     try:
-        return path.read_text(encoding="utf-8")
+        return whole_text(path)
     except (OSError, UnicodeDecodeError) as cause:
         raise CellError(report("IRL612", place, model=model, cause=str(cause), near="")) from cause

@@ -19,6 +19,7 @@ from irlx.cell.obstacles import Frames, base_of, read_obstacles
 from irlx.cell.read import read_cell_file
 from irlx.cell.schema import CellFile, ObstacleSection, WaypointSection
 from irlx.diagnostics import Diagnostic
+from irlx.diagnostics.whole_file import whole_file
 from irlx.solids.placement import Placement
 
 _DIGITS_MM, _DIGITS_DEG = 1, 2
@@ -86,7 +87,7 @@ def _content(cell: Cell) -> CellFile:
     if not cell.scene.obstacles:
         return CellFile()
     try:
-        return read_cell_file(Path(cell.file).read_bytes(), cell.file)
+        return read_cell_file(whole_file(Path(cell.file)), cell.file)
     except (OSError, CellError):
         return CellFile()
 

@@ -9,6 +9,7 @@ from irlx.cell.link_meshes import mesh_faults
 from irlx.cell.schema import RobotSection, SelfCollisionSection
 from irlx.diagnostics import Diagnostic
 from irlx.diagnostics.diagnostic import near_matches
+from irlx.diagnostics.whole_file import whole_text
 from irlx.robot.description import RobotDescription
 from irlx.robot.link_pairs import pairs_that_could_meet
 from irlx.robot.srdf import LinkPairs, pairs_that_may_touch
@@ -71,7 +72,7 @@ def _described_pairs(
         return frozenset(), ""
     path = Path(file).parent / given.srdf
     try:
-        return pairs_that_may_touch(path.read_text(encoding="utf-8"), _links(robot)), ""
+        return pairs_that_may_touch(whole_text(path), _links(robot)), ""
     except FileNotFoundError:
         return frozenset(), f"there is no {path}"
     except OSError as cause:

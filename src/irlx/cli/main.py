@@ -1,7 +1,7 @@
 """`irlx`: argument parser, dispatch, exit codes.
 
 0 fine; 1 findings, or a program that ended in a robot error; 2 usage, configuration or internal
-error; 130 interrupted.
+error; 130 interrupted, 128 + N ended by signal N.
 """
 
 from __future__ import annotations
@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING
 
 from irlx._version import __version__
 from irlx.cli.parser import CommandParser
+from irlx.cli.standard_channels import OutputLost, drop_output, take_channels
+from irlx.cli.stopping import heed_signals, ignore_signals, stopped_code
 
 if TYPE_CHECKING:
     from irlx.diagnostics import Diagnostic
@@ -67,25 +69,36 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     Raises SystemExit for --help and what argparse refuses.
     """
-    first = next(iter(sys.argv[1:] if arguments is None else arguments), None)
-    parser = build_parser(first if first in _COMMANDS else None)
     try:
-        options = parser.parse_args(arguments)
-        if options.command is None:
-            parser.print_help()
-            return 0
-        code = options.command(options)
+        code = _carried_out(arguments)
         # Here and not at the end of the process: a reader that went away must be met inside this fence.
         sys.stdout.flush()
-    except KeyboardInterrupt:
-        return 130
+    except KeyboardInterrupt as interrupt:
+        print("irlx: interrupted", file=sys.stderr)
+        return stopped_code(interrupt)
     except BrokenPipeError:
         # The reader of our output went away: nothing is wrong, nothing more can be said.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        drop_output(sys.stdout.fileno())
         return 0
     except Exception as error:
         return _told(error)
     return int(code)
+
+
+def _carried_out(arguments: Sequence[str] | None) -> int:
+    """Carry out one command; gives its exit code."""
+    first = next(iter(sys.argv[1:] if arguments is None else arguments), None)
+    parser = build_parser(first if first in _COMMANDS else None)
+    try:
+        options = parser.parse_args(arguments)
+    except SystemExit:
+        # Behind a help, which argparse has printed.
+        sys.stdout.flush()
+        raise
+    if options.command is None:
+        parser.print_help()
+        return 0
+    return int(options.command(options))
 
 
 def _told(error: Exception) -> int:
@@ -97,6 +110,16 @@ def _told(error: Exception) -> int:
     found: Sequence[Diagnostic] = ()
     if isinstance(error, IrlxError):
         found = error.diagnostics
+    elif isinstance(error, OutputLost):
+        cause = str(error.strerror or error).lower()
+        found = (
+            report("IRL003", path="stdout", cause=cause, help="what was asked for is written all the same"),
+        )
+    elif isinstance(error, FileNotFoundError) and not _has_folder():
+        found = (report("IRL002", path=".", cause="the working folder is gone"),)
+    elif _lacks_memory(error):
+        cause = "the memory that this process may use is used up"
+        found = (report("IRL090", help="let it use more; a larger --tick needs less", cause=cause),)
     elif os.environ.get("IRLX_DEBUG"):
         raise error
     else:
@@ -106,9 +129,30 @@ def _told(error: Exception) -> int:
     return exit_code(found)
 
 
+def _has_folder() -> bool:
+    """Whether the working folder is still there."""
+    try:
+        os.getcwd()
+    except FileNotFoundError:
+        return False
+    return True
+
+
+def _lacks_memory(error: BaseException) -> bool:
+    """Whether an exception says so, that of a library which could not be loaded as well."""
+    words = ("failed to map segment", "cannot allocate memory")
+    return isinstance(error, MemoryError) or any(said in str(error).lower() for said in words)
+
+
 def entry_point() -> None:
     """Console entry: `irlx`."""
     # Matrices here are small: threads of the linear algebra would only wait for each other, the more so on a
     # busy machine. Set before anything loads it; who asks for more threads gets them.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    sys.exit(main())
+    heed_signals()
+    take_channels()
+    try:
+        code = main()
+    finally:
+        ignore_signals()
+    sys.exit(code)

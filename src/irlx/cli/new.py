@@ -118,10 +118,6 @@ def known_robot(name: str) -> str:
 
 def write_text(path: Path, text: str) -> None:
     """Write a file. Raises IrlxError, IRL003."""
-    from irlx.diagnostics import IrlxError, report
+    from irlx.cli.replacing import replace_content
 
-    try:
-        path.write_text(text, encoding="utf-8")
-    except OSError as cause:
-        words = cause.strerror or str(cause)
-        raise IrlxError(report("IRL003", path=path, cause=words, help="")) from cause
+    replace_content(path, text.encode("utf-8"))

@@ -18,7 +18,8 @@ class CommandParser(argparse.ArgumentParser):
     """Parser of the whole line, and of each command.
 
     Parsing raises IrlxError, beside what argparse itself does: IRL016 for an unknown command, IRL017 for an
-    unknown option. Both are looked for before anything else: a slip is not told as what follows of it.
+    unknown option. Both are looked for before anything else: a slip is not told as what follows of it. IRL006
+    is a value that an argument cannot have.
     """
 
     commands: argparse._SubParsersAction[Any] | None = None
@@ -56,6 +57,33 @@ class CommandParser(argparse.ArgumentParser):
             name = argument.partition("=")[0]
             if name.startswith("--") and not any(known.startswith(name) for known in self._long()):
                 raise self._unknown(name)
+
+    def _get_value(self, action: argparse.Action, arg_string: str) -> Any:
+        """The value of an argument; raises IrlxError, IRL006, for one of another kind."""
+        try:
+            return super()._get_value(action, arg_string)
+        except argparse.ArgumentError as cause:
+            expected = {int: "a whole number is expected", float: "a number is expected"}
+            words = next((words for kind, words in expected.items() if action.type is kind), str(cause))
+            raise self._unfit(action, arg_string, words) from None
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """Raises IrlxError, IRL006, for a value that is not among those that can be chosen."""
+        commands = isinstance(action, argparse._SubParsersAction)
+        if commands or action.choices is None or value in action.choices:
+            super()._check_value(action, value)
+            return
+        from irlx.diagnostics.diagnostic import near_matches
+
+        known = [str(choice) for choice in action.choices]
+        raise self._unfit(action, value, f"not one of {', '.join(known)}{near_matches(str(value), known)}")
+
+    def _unfit(self, action: argparse.Action, value: object, cause: str) -> IrlxError:
+        from irlx.diagnostics import IrlxError, report
+
+        option = action.option_strings[-1] if action.option_strings else action.dest
+        helps = f"{self.prog} --help has examples"
+        return IrlxError(report("IRL006", help=helps, option=option, value=str(value) or "''", cause=cause))
 
     def _long(self) -> list[str]:
         return [name for name in self._option_string_actions if name.startswith("--")]

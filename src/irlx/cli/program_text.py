@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Callable
 from typing import IO
 
 from irlx.cli.output import encodable
+from irlx.cli.standard_channels import drop_output
 
 
 class ProgramText:
@@ -41,15 +41,10 @@ class ProgramText:
                 self._gone = True
             except OSError:
                 self._gone = True
-                self._drop()
+                # Else Python tries again at its end, and speaks of it.
+                drop_output(self._stream.fileno())
                 raise
         return len(text)
-
-    def _drop(self) -> None:
-        """Let what cannot be written go: else Python tries again at its end, and speaks of it."""
-        nowhere = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(nowhere, self._stream.fileno())
-        os.close(nowhere)
 
     def end_line(self) -> None:
         """Begin a new line, unless stdout is at the beginning of one."""

@@ -13,6 +13,7 @@ from irlx.cli.execution import add_execution_options, add_plugin_option, import_
 from irlx.cli.outputs import output_paths, page_path
 from irlx.cli.program_text import ProgramText, TypedInput
 from irlx.cli.progress import shown_progress
+from irlx.cli.stopping import stopped_code
 
 if TYPE_CHECKING:
     from irlx.diagnostics import Diagnostic
@@ -140,7 +141,7 @@ def command(options: argparse.Namespace) -> int:
         text.end_line()
         print("irlx: interrupted", file=sys.stderr)
         _tell_partial(interrupt.run, [*outputs, *_pages(page)], "interrupted", options)
-        return 130
+        return stopped_code(interrupt)
     if not options.quiet or run.diagnostics:
         text.end_line()
         print_diagnostics(run.diagnostics)

@@ -65,15 +65,18 @@ class FileRecording(Recorder):
             self._page.say(text, origin)
 
     def finish(self, complete: bool, diagnostics: tuple[Diagnostic, ...]) -> Outcome:
-        """Let the files appear; of a run in which nothing has moved, none."""
+        """Let the files appear; of a run in which nothing has moved, none.
+
+        Each for itself: what could not be written is an error among the diagnostics, IRL003.
+        """
         worth = complete or self.rows > 1
         with uninterrupted():
-            files = self._files.close(complete, worth)
+            files, failures = self._files.close(complete, worth)
         found = Outcome(
             header=self.header,
             summary=self._figures.summary(complete),
             events=self._figures.events,
-            diagnostics=diagnostics,
+            diagnostics=(*diagnostics, *failures),
             files=files,
         )
         if self._page is None or not worth:
@@ -81,8 +84,11 @@ class FileRecording(Recorder):
         # Behind the streams, which are worth more.
         name = None if complete else partial_name(self._page.path)
         with uninterrupted():
-            page, warnings = self._page.close(found, name)
-        return replace(found, page=page, diagnostics=(*diagnostics, *warnings))
+            try:
+                page, warnings = self._page.close(found, name)
+            except StreamError as failure:
+                return replace(found, diagnostics=(*found.diagnostics, *failure.diagnostics))
+        return replace(found, page=page, diagnostics=(*found.diagnostics, *warnings))
 
     def abort(self) -> None:
         """Remove what was written."""
@@ -121,13 +127,13 @@ class _Files:
                 self._writers.remove(writer)
                 raise
 
-    def close(self, complete: bool, worth: bool) -> tuple[Path, ...]:
-        """Let the files appear where they are `worth` it; their names. Raises last the first failure."""
+    def close(self, complete: bool, worth: bool) -> tuple[tuple[Path, ...], tuple[Diagnostic, ...]]:
+        """Let the files appear where they are `worth` it; their names, and why others did not."""
         if not worth:
             self.abort()
-            return ()
+            return (), ()
         names: list[Path] = []
-        failures: list[StreamError] = []
+        failures: list[Diagnostic] = []
         writers, self._writers = self._writers, []
         for writer in writers:
             name = writer.path if complete else partial_name(writer.path)
@@ -135,10 +141,8 @@ class _Files:
                 writer.close(complete, name)
                 names.append(name)
             except StreamError as failure:
-                failures.append(failure)
-        if failures:
-            raise failures[0]
-        return tuple(names)
+                failures += failure.diagnostics
+        return tuple(names), tuple(failures)
 
     def abort(self) -> None:
         for writer in self._writers:

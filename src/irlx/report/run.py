@@ -105,7 +105,8 @@ class Run(Outcome):
 class RunError(IrlxError):
     """A run that ended in an error; `run` holds what was executed until then, marked incomplete.
 
-    That is a `Run` where `irlx.run` raises, the `Outcome` where `irlx.record` does.
+    That is a `Run` where `irlx.run` raises, the `Outcome` where `irlx.record` does. Where nothing went wrong
+    but that a file could not be ended, that is complete.
     """
 
     def __init__(self, diagnostics: tuple[Diagnostic, ...], run: Outcome) -> None:

@@ -12,6 +12,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from irlx.diagnostics.whole_file import whole_file
 from irlx.solids.shape import Mesh
 from irlx.solids.triangles import Triangles
 
@@ -35,6 +36,8 @@ _FLAT = 1e-12
 _FARTHEST = 1e12
 """Coordinates of a mesh file lie below; beyond, squares and products of them say nothing."""
 _KEPT = 256
+_MOST_BYTES = 256_000_000
+"""Of a mesh file."""
 
 
 class MeshFileError(ValueError):
@@ -137,7 +140,7 @@ def _is_binary_stl(path: Path) -> bool:
 def _content(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Vertices and faces as the file has them. Raises MeshFileError."""
     try:
-        content = path.read_bytes()
+        content = whole_file(path, _MOST_BYTES)
     except OSError as cause:
         raise MeshFileError(_words(cause)) from cause
     if not content.strip():

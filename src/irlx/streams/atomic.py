@@ -6,12 +6,15 @@ import contextlib
 import errno
 import os
 import shutil
+from collections.abc import Callable
 from itertools import count
 from pathlib import Path
 from types import TracebackType
-from typing import IO
+from typing import IO, TypeVar
 
 from irlx.streams.error import cannot_write
+
+Made = TypeVar("Made")
 
 _NUMBERS = count(1)
 _LONGEST_ENDING = 16
@@ -27,17 +30,14 @@ class AtomicFile:
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self.path = Path(path)
+        self.handle: IO[bytes]
         try:
             self._target = Path(os.path.realpath(self.path))
             if self._target.is_dir():
                 raise IsADirectoryError(None, "it is a folder")
             if self._target.exists() and not self._target.is_file():
                 raise ValueError("it is not a regular file")
-            # Short and without the target's name, whose length may already be all that is allowed; with its
-            # ending, by which what a killed process has left can be read.
-            name = f".irlx-{os.getpid()}-{next(_NUMBERS)}.part{self._target.suffix[:_LONGEST_ENDING]}"
-            self._temporary = self._target.parent / name
-            self.handle: IO[bytes] = self._temporary.open("xb")
+            self._temporary, self.handle = made_beside(self._target, lambda path: path.open("xb"))
         except (OSError, ValueError) as cause:
             raise cannot_write(self.path, cause) from cause
 
@@ -107,6 +107,22 @@ class AtomicFile:
         # zipfile and numpy write to the handle themselves; their OSError is a failure to write, too.
         if isinstance(error, OSError):
             raise cannot_write(self.path, error) from error
+
+
+def made_beside(target: Path, make: Callable[[Path], Made]) -> tuple[Path, Made]:
+    """A path in the folder of `target` that nothing has had, and what `make` makes there. Raises OSError.
+
+    Its name is short and without that of the target, whose length may already be all that is allowed; it has
+    the target's ending, by which what a killed process has left can be read.
+    """
+    while True:
+        name = f".irlx-{os.getpid()}-{next(_NUMBERS)}.part{target.suffix[:_LONGEST_ENDING]}"
+        path = target.parent / name
+        try:
+            return path, make(path)
+        except FileExistsError:
+            # Left by a process that was killed and had this very number, as in containers most have.
+            continue
 
 
 def check_writable(path: str | os.PathLike[str]) -> None:

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import shutil
 from collections.abc import Callable
-from itertools import count
 from pathlib import Path
 
+from irlx.streams.atomic import made_beside
 from irlx.streams.error import cannot_write
 
-_NUMBERS = count(1)
-_LONGEST_ENDING = 16
+_IN_THE_WAY = {errno.ENOTEMPTY, errno.EEXIST, errno.ENOTDIR}
 
 
 class AtomicFolder:
@@ -28,9 +28,7 @@ class AtomicFolder:
         self._may_replace = may_replace
         try:
             self._target = self._checked(self.path)
-            # With the target's ending, by which what a killed process has left can be read.
-            self.folder = self._beside(f"part{self._target.suffix[:_LONGEST_ENDING]}")
-            self.folder.mkdir()
+            self.folder, _ = made_beside(self._target, Path.mkdir)
         except (OSError, ValueError) as cause:
             raise cannot_write(self.path, cause) from cause
 
@@ -61,26 +59,49 @@ class AtomicFolder:
         if target.exists():
             if not target.is_dir():
                 raise ValueError("it is a file, a folder is to be written")
-            self._may_replace(target)
+            # What another process takes away at this moment is not in the way.
+            with contextlib.suppress(FileNotFoundError):
+                self._may_replace(target)
         return target
-
-    def _beside(self, ending: str) -> Path:
-        """A name beside the target that nothing has."""
-        return self._target.parent / f".irlx-{os.getpid()}-{next(_NUMBERS)}.{ending}"
 
     def _put_in_place(self) -> None:
         """Rename the folder; no system has one step that replaces a folder with files in it."""
-        if not self._target.exists():
-            shutil.move(self.folder, self._target)
-            return
-        before = self._beside(f"before{self._target.suffix[:_LONGEST_ENDING]}")
-        self._target.rename(before)
+        aside: list[Path] = []
         try:
-            shutil.move(self.folder, self._target)
-        except OSError:
-            before.rename(self._target)
+            while not self._renamed():
+                self._checked(self._target)
+                aside += self._set_aside()
+        except BaseException:
+            for before in aside[-1:]:
+                with contextlib.suppress(OSError):
+                    before.rename(self._target)
             raise
-        shutil.rmtree(before, ignore_errors=True)
+        finally:
+            for before in aside:
+                shutil.rmtree(before, ignore_errors=True)
+
+    def _renamed(self) -> bool:
+        """Rename the folder, unless something is in the way.
+
+        A move would put it into a folder that another process has put there meanwhile.
+        """
+        try:
+            self.folder.rename(self._target)
+        except OSError as cause:
+            if cause.errno not in _IN_THE_WAY:
+                raise
+            return False
+        return True
+
+    def _set_aside(self) -> list[Path]:
+        """Give what stands in the place another name; none where another process was faster."""
+        before, _ = made_beside(self._target, Path.mkdir)
+        try:
+            self._target.rename(before)
+        except FileNotFoundError:
+            before.rmdir()
+            return []
+        return [before]
 
 
 def _sync(path: Path) -> None:

@@ -16,6 +16,7 @@ from irlx.streams.csv_writer import column_line, comment
 from irlx.streams.error import StreamError, broken, open_to_read
 from irlx.streams.header_plain import PlainFormError, VersionError, header_from_plain
 from irlx.streams.joint_stream import FORMAT_VERSION, Floats, StreamHeader
+from irlx.streams.lines import all_lines, next_line
 from irlx.streams.numbers import NUMBER_CHARACTERS, table_of
 from irlx.streams.scan import RowBatch, ScanItem, StatedRates, StreamEnd, rising_rows
 
@@ -82,7 +83,7 @@ class _Reader:
         return header
 
     def _head_lines(self) -> Iterator[bytes]:
-        while text := self.handle.readline():
+        for text in all_lines(self.handle):
             whole = self._whole_lines(text)
             if whole:
                 yield whole
@@ -91,7 +92,7 @@ class _Reader:
         """Whole lines of samples in portions; a comment in the file's last line becomes `closing`."""
         last = b""
         while portion := self.handle.read(_PORTION):
-            text = self._whole_lines(last + portion + self.handle.readline())
+            text = self._whole_lines(last + portion + next_line(self.handle))
             last = _last_line(text)
             if len(last) < len(text):
                 yield from self._passing(text[: len(text) - len(last)])

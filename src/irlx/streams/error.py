@@ -9,6 +9,7 @@ from typing import IO
 
 from irlx.diagnostics import IrlxError, Place, report
 from irlx.diagnostics.diagnostic import near_matches
+from irlx.diagnostics.whole_file import open_file
 
 
 class StreamError(IrlxError):
@@ -38,7 +39,7 @@ def cannot_read(path: Path, cause: OSError | ValueError) -> StreamError:
 def open_to_read(path: Path) -> Iterator[IO[bytes]]:
     """The file `path`, opened to read bytes; failures of the file system become StreamError."""
     try:
-        handle = path.open("rb")
+        handle = open_file(path)
     except (OSError, ValueError) as cause:
         raise cannot_read(path, cause) from cause
     with handle:

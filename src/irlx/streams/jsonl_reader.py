@@ -17,6 +17,7 @@ from irlx.streams.error import StreamError, broken, open_to_read
 from irlx.streams.header_plain import PlainFormError, VersionError, header_from_plain, record_from_plain
 from irlx.streams.joint_stream import FORMAT_VERSION, Floats, StreamHeader
 from irlx.streams.jsonl_writer import SAMPLE_KEYS
+from irlx.streams.lines import all_lines
 from irlx.streams.scan import RowBatch, ScanItem, StatedRates, StreamEnd, rising_rows
 
 _LINES = 1024
@@ -56,7 +57,8 @@ class _Reader:
 
     def items(self) -> Iterator[ScanItem]:
         fault: StreamError | None = None
-        while lines := list(islice(self.handle, _LINES)):
+        given = all_lines(self.handle)
+        while lines := list(islice(given, _LINES)):
             for group in _groups(lines):
                 if self.end is not None:
                     raise self._broken("text follows the end", self.line + 1)

@@ -31,6 +31,8 @@ _HEAD = re.compile(
     rb"'shape': \((?P<shape>(?:[0-9]{1,18}, ?)*(?:[0-9]{1,18})?)\), \} *\n"
 )
 _LONGEST_HEAD = 10_000
+_LONGEST_MEMBER = 1 << 28
+"""Bytes of what is read as a whole, which a compressed file can be much shorter than."""
 _DAMAGE = (zipfile.BadZipFile, zlib.error, KeyError, ValueError, EOFError, NotImplementedError, RuntimeError)
 
 
@@ -133,7 +135,10 @@ def _runs(plain: object) -> Integers:
 
 def _member(archive: zipfile.ZipFile, key: str) -> Any:
     """One small array; the whole member is read first, so that its checksum is compared before all else."""
-    data = io.BytesIO(archive.read(f"{key}.npy"))
+    info = archive.getinfo(f"{key}.npy")
+    if info.file_size > _LONGEST_MEMBER:
+        raise ValueError(f"{key} has more than {_LONGEST_MEMBER:,} bytes")
+    data = io.BytesIO(archive.read(info))
     return np.lib.format.read_array(data, allow_pickle=False)
 
 

@@ -6,7 +6,7 @@ import json
 import os
 import tempfile
 import zipfile
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import IO, Any
 
@@ -94,7 +94,8 @@ class NpzWriter(StreamWriter):
                             np.lib.format.write_array(member, texts[key], allow_pickle=False)
                         else:
                             self._copy(key, member)
-        except OSError as cause:
+        except (OSError, ValueError) as cause:
+            # An archive whose member could not be ended says so as ValueError.
             self.abort()
             raise cannot_write(self.path, cause) from cause
 
@@ -111,12 +112,17 @@ class NpzWriter(StreamWriter):
             member.write(portion)
 
     def _commit(self, name: Path | None) -> None:
-        self._parts.close()
+        self._forget_parts()
         self._file.commit(name)
 
     def _discard(self) -> None:
-        self._parts.close()
+        self._forget_parts()
         self._file.discard()
+
+    def _forget_parts(self) -> None:
+        # On a full disk closing fails as well, for what is still to be written.
+        with suppress(OSError):
+            self._parts.close()
 
 
 def _nameless(folder: Path) -> IO[bytes]:

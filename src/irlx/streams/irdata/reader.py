@@ -18,6 +18,7 @@ from irlx.streams.irdata.header import HeaderParser
 from irlx.streams.irdata.record import Record, RecordError, parse_record
 from irlx.streams.irdata.samples import is_sample, parse_samples
 from irlx.streams.joint_stream import FORMAT_VERSION, BlockRecord, JointStream, StreamHeader
+from irlx.streams.lines import portions
 from irlx.streams.scan import RowBatch, ScanItem, StreamEnd, collect, no_rows, rising_rows
 
 _CHUNK = 1 << 19
@@ -41,7 +42,7 @@ def scan_irdata(path: str | os.PathLike[str]) -> Iterator[ScanItem]:
     path = Path(path)
     reader = _Reader(path)
     with open_to_read(path) as handle:
-        while lines := handle.readlines(_CHUNK):
+        for lines in portions(handle, _CHUNK):
             yield from reader.take(lines)
     yield reader.stream_end()
 
