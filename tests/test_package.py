@@ -54,7 +54,7 @@ def test_metadata(wheel):
         metadata, entries = (archive.read(entry).decode() for entry in (name, scripts))
     assert "Name: irlx\n" in metadata
     assert "License-Expression: Apache-2.0" in metadata
-    assert "irlx = irlx.cli.main:entry_point" in entries
+    assert "irlx = irlx.cli.entry:entry_point" in entries
     assert "[pygments.lexers]\nirl = irlx.language.highlight.pygments_lexer:IrlLexer\n" in entries
 
 

@@ -1,6 +1,6 @@
 """`python -m irlx`."""
 
-from irlx.cli.main import entry_point
+from irlx.cli.entry import entry_point
 
 if __name__ == "__main__":
     entry_point()

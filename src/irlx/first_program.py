@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from itertools import islice, product
 from math import floor, isfinite, log10
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +20,7 @@ from irlx.diagnostics import Diagnostic, IrlxError, report
 from irlx.robot.kinematics import Kinematics
 from irlx.running import run
 from irlx.solids.shape import Mesh
+from irlx.streams.temporary_folder import temporary_folder
 from irlx.transform.nearest import nearest_in_bounds
 from irlx.transform.open_posture import open_posture
 from irlx.verification import verify
@@ -255,8 +255,8 @@ def _tried(bare: BareRobot, choices: CellChoices, program: str, model: str) -> F
     at = model if bare.has_name else str(Path(model).absolute())
     watched = False if _has_meshes(bare) else choices.watched
     there = replace(choices, model=at, watched=watched)
-    with TemporaryDirectory(prefix="irlx-new-") as folder:
-        path = Path(folder) / f"{choices.name}.irl"
+    with temporary_folder() as folder:
+        path = folder / f"{choices.name}.irl"
         path.write_text(program, encoding="utf-8")
         path.with_suffix(".toml").write_text(new_cell_text(bare, there), encoding="utf-8")
         try:

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -23,6 +22,7 @@ from irlx.streams.header_plain import header_to_plain
 from irlx.streams.joint_stream import BlockRecord, StreamHeader
 from irlx.streams.making import Making
 from irlx.streams.scan import RowBatch, ScanItem
+from irlx.streams.temporary_folder import temporary_folder
 
 _SOFTWARE = ("irlx_version", "making.software")
 
@@ -89,8 +89,8 @@ def reproduce(
     )
     _check_same(out, header, job)
     job = replace(job, making=replace(job.making, given=making.given))
-    with TemporaryDirectory() as folder:
-        again = Path(folder) / out.name
+    with temporary_folder() as folder:
+        again = folder / out.name
         try:
             execute_to_files(Execution(job), [again])
         except RunError as error:

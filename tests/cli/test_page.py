@@ -183,6 +183,13 @@ def test_a_disk_that_is_full_for_the_page_costs_no_stream(inside, folder, names,
     assert done.returncode == 2
     assert "error IRL003: cannot write p.html: no space left on device" in done.stderr
     assert names(folder) == ["p.csv", *FILES]
+    # The run is complete, and told of as ever.
+    assert "\np.irl: complete, verified, " in done.stdout
+    assert re.search(r"^written +p.csv +\d+ samples, \d+ checks passed", done.stdout, re.MULTILINE)
+    assert "page" not in done.stdout
+    found = json.loads(inside("run", "p.irl", "-o", "p.csv", "--html", "p.html", "--json").stdout)
+    assert (found["files"], found["page"], found["verified"]) == (["p.csv"], None, {"p.csv": True})
+    assert [one["code"] for one in found["diagnostics"]] == ["IRL003"]
 
 
 def test_a_link_that_cannot_be_drawn_is_told_and_costs_no_run(inside, folder):

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from irlx._version import __version__
 from irlx.cli.parser import CommandParser
 from irlx.cli.standard_channels import OutputLost, drop_output, take_channels
-from irlx.cli.stopping import heed_signals, ignore_signals, stopped_code
+from irlx.cli.stopping import Stopped, heard_signal, heed_signals, ignore_signals, stopped_code
 
 if TYPE_CHECKING:
     from irlx.diagnostics import Diagnostic
@@ -38,6 +38,8 @@ _COMMANDS = (
     "conformance",
 )
 """Modules of the commands, in the order of the help."""
+_STOPPED = 128
+"""Exit codes from here on are of commands that were stopped."""
 _EXAMPLE = """\
 examples:
   irlx demo
@@ -74,15 +76,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
         # Here and not at the end of the process: a reader that went away must be met inside this fence.
         sys.stdout.flush()
     except KeyboardInterrupt as interrupt:
-        print("irlx: interrupted", file=sys.stderr)
-        return stopped_code(interrupt)
+        return _stopped(interrupt)
     except BrokenPipeError:
         # The reader of our output went away: nothing is wrong, nothing more can be said.
         drop_output(sys.stdout.fileno())
         return 0
     except Exception as error:
-        return _told(error)
+        number = heard_signal()
+        # What libraries make of an interruption while they are loaded is none of their errors.
+        return _told(error) if number is None else _stopped(Stopped(number))
     return int(code)
+
+
+def _stopped(interrupt: KeyboardInterrupt) -> int:
+    print("irlx: interrupted", file=sys.stderr)
+    return stopped_code(interrupt)
 
 
 def _carried_out(arguments: Sequence[str] | None) -> int:
@@ -113,7 +121,12 @@ def _told(error: Exception) -> int:
     elif isinstance(error, OutputLost):
         cause = str(error.strerror or error).lower()
         found = (
-            report("IRL003", path="stdout", cause=cause, help="what was asked for is written all the same"),
+            report(
+                "IRL003",
+                path="stdout",
+                cause=cause,
+                help="files that were asked for are written all the same",
+            ),
         )
     elif isinstance(error, FileNotFoundError) and not _has_folder():
         found = (report("IRL002", path=".", cause="the working folder is gone"),)
@@ -155,4 +168,9 @@ def entry_point() -> None:
         code = main()
     finally:
         ignore_signals()
+    if code >= _STOPPED:
+        # Python would end itself by the signal where its exception has passed through an exec() on its way.
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(code)
     sys.exit(code)

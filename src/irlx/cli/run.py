@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, cast
 
@@ -18,6 +18,7 @@ from irlx.cli.stopping import stopped_code
 if TYPE_CHECKING:
     from irlx.diagnostics import Diagnostic
     from irlx.job import Job
+    from irlx.pipeline import Execution
     from irlx.program import Program
     from irlx.report.outcome import Outcome
     from irlx.report.progress import Progress
@@ -120,15 +121,14 @@ def command(options: argparse.Namespace) -> int:
     job, outputs, page = _prepared(options, text)
     from irlx.pipeline import Execution
     from irlx.report.run import RunError, RunInterrupted
-    from irlx.running import execute_to_files
 
     try:
         with shown_progress(job, options.quiet or options.json) as progress:
             # A program whose text goes elsewhere does not disturb the line.
             text.first = progress.silence if progress is not None and sys.stdout.isatty() else None
             execution = Execution(job, watch=progress)
-            run = execute_to_files(execution, outputs, progress, options.explain_tick, page)
-            reports = _reports(job, outputs, progress, options)
+            run = _executed(execution, outputs, progress, options.explain_tick, page)
+            reports = _reports(job, run.files, progress, options)
     except RunError as error:
         text.end_line()
         print_diagnostics(error.diagnostics)
@@ -139,21 +139,42 @@ def command(options: argparse.Namespace) -> int:
         return exit_code(error.diagnostics)
     except RunInterrupted as interrupt:
         text.end_line()
+        print_diagnostics(found for found in interrupt.run.diagnostics if found.is_error)
         print("irlx: interrupted", file=sys.stderr)
         _tell_partial(interrupt.run, [*outputs, *_pages(page)], "interrupted", options)
         return stopped_code(interrupt)
     if not options.quiet or run.diagnostics:
         text.end_line()
         print_diagnostics(run.diagnostics)
+    _tell_left([*outputs, *_pages(page)], run, options)
     broken = [found for name, report in reports.items() for found in report.diagnostics(name)]
     print_diagnostics(broken)
-    if options.write_data and not broken:
+    unwritten = exit_code(run.diagnostics)
+    if options.write_data and not (broken or unwritten):
         # Behind the verification, which reads the lists as they were.
         print_diagnostics(execution.write_data())
     if broken or options.explain_tick is not None:
         text.end_line()
-    _print_summary(run, outputs, reports, broken, options)
-    return 1 if broken else 0
+    _print_summary(run, reports, broken, options)
+    return unwritten or int(bool(broken))
+
+
+def _executed(
+    execution: Execution, outputs: list[Path], progress: Progress | None, tick: int | None, page: Path | None
+) -> Outcome:
+    """The complete run; what could not be written at its end is among its diagnostics.
+
+    Raises RunError and RunInterrupted for one that is not complete.
+    """
+    from irlx.report.run import RunError
+    from irlx.running import execute_to_files
+
+    try:
+        return execute_to_files(execution, outputs, progress, tick, page)
+    except RunError as error:
+        if not error.run.complete:
+            raise
+        return error.run
 
 
 def _pages(page: Path | None) -> list[Path]:
@@ -209,6 +230,19 @@ def _default_output(job: Job) -> Path:
     ending = f".replay{path.suffix}" if isinstance(job.program, Recorded) else ".irdata"
     beside = path.with_suffix(ending)
     return beside if os.access(beside.parent, os.W_OK) else Path(beside.name)
+
+
+def _tell_left(asked: Sequence[Path], run: Outcome, options: argparse.Namespace) -> None:
+    """Say which files beside those of a complete run are older than it; they are nobody's to remove."""
+    from irlx.cli.output import encodable
+    from irlx.report.file_recording import partial_name
+
+    made = {*run.files, run.page}
+    names = [partial_name(path) if path in made else path for path in asked]
+    for path in () if options.quiet else names:
+        if path.exists():
+            words = f"irlx: {path} is left as it was, from an earlier run"
+            print(encodable(words, sys.stderr), file=sys.stderr)
 
 
 def _why(error: Diagnostic, run: Outcome) -> str:
@@ -273,7 +307,7 @@ def _plain_diagnostics(diagnostics: Iterable[Diagnostic]) -> list[dict[str, obje
 
 
 def _reports(
-    job: Job, outputs: list[Path], progress: Progress | None, options: argparse.Namespace
+    job: Job, outputs: Sequence[Path], progress: Progress | None, options: argparse.Namespace
 ) -> dict[str, Report]:
     """What the verifier says of each file, by its name."""
     reports = {}
@@ -295,7 +329,6 @@ def _verified(path: Path, job: Job) -> Report:
 
 def _print_summary(
     run: Outcome,
-    outputs: list[Path],
     reports: dict[str, Report],
     broken: list[Diagnostic],
     options: argparse.Namespace,
@@ -311,7 +344,7 @@ def _print_summary(
             "summary": run.summary.to_plain(),
             "output": run.output,
             "tick": run.explanation.to_plain() if run.explanation is not None else None,
-            "files": [str(path) for path in outputs],
+            "files": [str(path) for path in run.files],
             "page": None if run.page is None else str(run.page),
             "verified": {name: report.passed for name, report in reports.items()},
             "diagnostics": _plain_diagnostics([*run.diagnostics, *broken]),
@@ -322,7 +355,7 @@ def _print_summary(
     if options.quiet:
         print_lines(failed_lines(reports))
         return
-    verified = None if options.no_verify else not broken
-    files = file_lines(run.summary, [str(path) for path in outputs], reports)
+    verified = None if options.no_verify or not reports else not broken
+    files = file_lines(run.summary, [str(path) for path in run.files], reports)
     pages = [] if run.page is None else [Line("page", str(run.page))]
     print_lines([*summary_lines(run.summary, verified), *files, *pages])

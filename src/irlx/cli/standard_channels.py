@@ -68,8 +68,11 @@ def _descriptor(channel: io.TextIOWrapper) -> int | None:
 def _over_descriptor(like: io.TextIOWrapper, number: int) -> io.TextIOWrapper:
     """A text stream like another one, over what knows how to fail."""
     like.flush()
+    raw = _Descriptor(number)
+    # With -u nothing is kept, as by Python itself.
+    buffer: Any = raw if like.write_through else io.BufferedWriter(raw)
     return io.TextIOWrapper(
-        io.BufferedWriter(_Descriptor(number)),
+        buffer,
         encoding=like.encoding,
         errors=like.errors,
         line_buffering=like.line_buffering,
@@ -84,15 +87,20 @@ class _Descriptor(io.FileIO):
         super().__init__(number, "wb", closefd=False)
 
     def write(self, data: ReadableBuffer, /) -> Any:
-        """Write bytes; waits where the other side has made the descriptor one that does not."""
+        """Write all of it; waits where the other side has made the descriptor one that does not."""
+        left = memoryview(data).cast("B")
+        size = left.nbytes
         try:
-            while (written := super().write(data)) is None:
-                select.select([], [self], [])
+            while left:
+                written = super().write(left)
+                if written is None:
+                    select.select([], [self], [])
+                else:
+                    left = left[written:]
         except OSError as cause:
             if isinstance(cause, BrokenPipeError) and self.fileno() == _NUMBERS["stdout"]:
                 raise
             drop_output(self.fileno())
             if self.fileno() == _NUMBERS["stdout"]:
                 raise OutputLost(cause.errno, cause.strerror) from cause
-            return memoryview(data).nbytes
-        return written
+        return size

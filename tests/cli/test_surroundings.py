@@ -1,0 +1,123 @@
+"""Inputs that are no files, too little memory, and settings around a run that change no byte."""
+
+import os
+import resource
+import subprocess
+import sys
+
+import pytest
+
+import irlx
+from irlx.streams import KNOWN_ENDINGS
+from stream_files import content_of
+
+pytestmark = pytest.mark.req("QA-09")
+
+SHORT = """PROGRAM p;
+BEGIN
+  MOVE PTP MAIN_JOINT(30, 60, -40);
+  MOVE_INC LIN POSITION(60, 40, 0);
+ENDPROGRAM
+"""
+PLANAR = '[robot]\nmodel = "planar3"\n[motion]\ntick_ms = 10\n'
+STRANGE = {
+    "fifo": os.mkfifo,
+    "device": lambda path: path.symlink_to("/dev/zero"),
+    "folder": lambda path: path.mkdir(),
+    "circle": lambda path: path.symlink_to(path.name),
+    "dangling": lambda path: path.symlink_to("nowhere"),
+    "sparse": lambda path: (path.touch(), os.truncate(path, 1 << 33)),
+    "nothing": lambda path: path.touch(),
+}
+INPUTS = [
+    ["check", "x.irl"],
+    ["run", "p.irl", "--cell", "x.toml"],
+    ["run", "p.irl", "--inputs", "x.csv"],
+    ["robots", "--check", "x.urdf"],
+    *(["verify", f"x{ending}"] for ending in KNOWN_ENDINGS),
+]
+
+
+@pytest.mark.parametrize("arguments", INPUTS, ids=lambda words: words[-1])
+def test_inputs_that_are_no_files(inside, folder, names, arguments):
+    path = folder / arguments[-1]
+    for make in STRANGE.values():
+        make(path)
+        done = inside(*arguments)
+        assert done.returncode in (1, 2)
+        assert "error IRL" in done.stderr or "FAILED" in done.stdout
+        path.rmdir() if path.is_dir() and not path.is_symlink() else path.unlink()
+    assert names(folder) == ["p.irl", "p.toml"]
+
+
+@pytest.mark.parametrize("text", ["MODULE", "DATALIST", "robot", "mesh"])
+def test_a_fifo_that_a_file_of_a_stranger_names(inside, folder, text):
+    """It would hold the command for ever."""
+    os.mkfifo(folder / "x.irl")
+    os.mkfifo(folder / "x.dat")
+    os.mkfifo(folder / "x.urdf")
+    os.mkfifo(folder / "x.stl")
+    if text == "MODULE":
+        (folder / "p.irl").write_text("PROGRAM p; FROM x IMPORT y; BEGIN y; ENDPROGRAM")
+    elif text == "DATALIST":
+        (folder / "p.irl").write_text("PROGRAM p; IMPORT DATALIST x; BEGIN ENDPROGRAM")
+    elif text == "robot":
+        (folder / "p.toml").write_text('[robot]\nmodel = "x.urdf"\n')
+    else:
+        mesh = '[[obstacle]]\nname = "x"\nshape = "mesh"\nfile = "x.stl"\n'
+        (folder / "p.toml").write_text((folder / "p.toml").read_text() + mesh)
+    done = inside("run", "p.irl")
+    assert done.returncode in (1, 2)
+    assert "error IRL" in done.stderr
+
+
+def test_too_little_memory(folder, environment, names):
+    """A message, and nothing that could be taken for a stream; no fault of irlx, and told as none."""
+
+    def little():
+        resource.setrlimit(resource.RLIMIT_AS, (400 << 20, 400 << 20))
+
+    call = [sys.executable, "-m", "irlx", "run", "p.irl"]
+    options = {"capture_output": True, "preexec_fn": little, "text": True, "timeout": 100}
+    done = subprocess.run(call, cwd=folder, env=environment, check=False, **options)
+    assert done.returncode in (1, 2)
+    assert "memory" in done.stderr.lower()
+    assert "Traceback" not in done.stderr
+    assert "fault of irlx" not in done.stderr
+    assert names(folder) == ["p.irl", "p.toml"]
+
+
+SETTINGS = [
+    (["-O", "-X", "dev"], {"PYTHONHASHSEED": "0", "TZ": "nonsense", "LC_ALL": "C", "PYTHONUTF8": "0"}),
+    (["-OO", "-W", "error"], {"PYTHONHASHSEED": "1", "OPENBLAS_NUM_THREADS": "2", "HOME": "/proc"}),
+]
+
+
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory):
+    """A program, and what a run inside this process writes of it in every form."""
+    folder = tmp_path_factory.mktemp("undisturbed")
+    (folder / "p.irl").write_text(SHORT)
+    (folder / "p.toml").write_text(PLANAR)
+    outputs = [folder / f"p{ending}" for ending in (*KNOWN_ENDINGS, ".html")]
+    irlx.record(folder / "p.irl", outputs)
+    return folder, {path.name: content_of(path) for path in outputs}
+
+
+@pytest.mark.parametrize(("python", "variables"), SETTINGS, ids=" ".join)
+def test_the_same_bytes_whatever_is_set(undisturbed, environment, tmp_path, python, variables):
+    """Another process, folder, locale, zone, seed of hashes, number of threads, and without assert."""
+    made, expected = undisturbed
+    asked = [word for name in expected for word in ("-o" if name[-4:] != "html" else "--html", name)]
+    call = [sys.executable, *python, "-m", "irlx", "run", str(made / "p.irl"), *asked, "--quiet"]
+    given = {**environment, **variables, "TMPDIR": "/nonexistent"}
+    done = subprocess.run(call, cwd=tmp_path, env=given, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    assert {name: content_of(tmp_path / name) for name in expected} == expected
+
+
+def test_samples_one_by_one_are_those_of_the_run(undisturbed):
+    folder, _ = undisturbed
+    run, samples = irlx.run(folder / "p.irl"), list(irlx.stream(folder / "p.irl"))
+    assert [one.q.tobytes() for one in samples] == [row.tobytes() for row in run.q]
+    assert [one.tool.tobytes() for one in samples] == [row.tobytes() for row in run.tool]
