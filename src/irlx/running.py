@@ -114,8 +114,8 @@ def record(
     at the end, whole. Of a program that ends in an error, and after Ctrl-C, what was executed appears beside
     them as `NAME.partial.ENDING`, marked incomplete. The program itself cannot write these files. Raises what
     `run` raises, and before anything moves StreamError: IRL003 where a file cannot be written, IRL004 for an
-    unknown ending, IRL005 where an input would be overwritten. A file that cannot be written any more later on
-    is a RunError; where it is known only at the end, its `run` is complete, and its `files` those that appeared.
+    unknown ending, IRL005 where an input would be overwritten. A file that cannot be written any more later
+    on is a RunError; where it is known only at the end, its `run` is complete, `files` those that appeared.
     """
     channels = files, input, output
     job = prepare(program, cell, tick_ms, max_slow, max_steps, inputs, *channels, pause_s)

@@ -4,9 +4,9 @@
     python tests/campaigns/surroundings.py --only kills,disk --count 30 --seed 7
 
 Each part prints one line with what it tried and what broke; the exit code is 1 where anything did. What must
-hold everywhere: the exit code is a documented one, messages carry codes, there is no traceback and no internal
-error (out of memory aside); a name that was asked for holds nothing, what it held before, or all of what an
-undisturbed run writes; what a killed process leaves is readable as far as the reference says.
+hold everywhere: the exit code is a documented one, messages carry codes, there is no traceback and no
+internal error (out of memory aside); a name that was asked for holds nothing, what it held before, or all of
+what an undisturbed run writes; what a killed process leaves is readable as far as the reference says.
 """
 
 from __future__ import annotations

@@ -254,7 +254,7 @@ def channels(place: Place, dice: random.Random, count: int) -> Iterator[Trial]:
 
 
 def programs(place: Place, dice: random.Random, count: int) -> Iterator[Trial]:
-    """All programs of the repository: to files with other threads, seeds and folders, and sample by sample."""
+    """All programs of the repository: to files with other threads, seeds, folders, and sample by sample."""
     found = sorted((ROOT / "programs").rglob("*.irl"))
     shutil.copytree(ROOT / "programs", place.folder / "programs")
     for path in dice.sample(found, min(count, len(found))):
