@@ -16,6 +16,7 @@ from irlx.blocks import AskPause, AskStandstill, Block, LinkFrame, Origin, Quest
 from irlx.cell.link_meshes import resolved_solids
 from irlx.cell.setting import setting_of
 from irlx.diagnostics import Diagnostic, IrlxError, Place, report
+from irlx.diagnostics.fault import fault
 from irlx.interpreter.channels.channels import Channels, Told
 from irlx.interpreter.interpret import Interpretation
 from irlx.job import Job, header_of, kinematics_of
@@ -103,7 +104,7 @@ class Execution:
                 if os.environ.get("IRLX_DEBUG"):
                     raise
                 # A fault of irlx itself must not cost what was executed before it.
-                raise IrlxError(report("IRL090", cause=f"{type(error).__name__}: {error}")) from error
+                raise IrlxError(fault(error)) from error
             yield executed
 
     def _carried_out(self) -> Generator[Executed, None, None]:

@@ -1,13 +1,14 @@
 """Inputs that are no files, too little memory, and settings around a run that change no byte."""
 
 import os
-import resource
 import subprocess
 import sys
 
 import pytest
 
 import irlx
+from irlx.cli.main import main
+from irlx.report.figures import Figures
 from irlx.streams import KNOWN_ENDINGS
 from stream_files import content_of
 
@@ -71,20 +72,22 @@ def test_a_fifo_that_a_file_of_a_stranger_names(inside, folder, text):
     assert "error IRL" in done.stderr
 
 
-def test_too_little_memory(folder, environment, names):
-    """A message, and nothing that could be taken for a stream; no fault of irlx, and told as none."""
+def test_too_little_memory(folder, names, monkeypatch, capsys):
+    """A message, and nothing that could be taken for a whole stream; no fault of irlx, and told as none."""
+    take, count = Figures.take, iter(range(100))
 
-    def little():
-        resource.setrlimit(resource.RLIMIT_AS, (400 << 20, 400 << 20))
+    def scarce(figures, segment):
+        if next(count) == 2:
+            raise MemoryError
+        take(figures, segment)
 
-    call = [sys.executable, "-m", "irlx", "run", "p.irl"]
-    options = {"capture_output": True, "preexec_fn": little, "text": True, "timeout": 100}
-    done = subprocess.run(call, cwd=folder, env=environment, check=False, **options)
-    assert done.returncode in (1, 2)
-    assert "memory" in done.stderr.lower()
-    assert "Traceback" not in done.stderr
-    assert "fault of irlx" not in done.stderr
-    assert names(folder) == ["p.irl", "p.toml"]
+    monkeypatch.setattr(Figures, "take", scarce)
+    monkeypatch.chdir(folder)
+    assert main(["run", "p.irl"]) == 2
+    told = capsys.readouterr().err
+    assert "error IRL090: internal error: the memory that this process may use is used up\n" in told
+    assert "fault of irlx" not in told
+    assert "p.irdata" not in names(folder)
 
 
 SETTINGS = [

@@ -114,6 +114,7 @@ def _told(error: Exception) -> int:
     # Imported here: what prints a help has no need of messages.
     from irlx.cli.output import exit_code, print_diagnostics
     from irlx.diagnostics import IrlxError, report
+    from irlx.diagnostics.fault import fault
 
     found: Sequence[Diagnostic] = ()
     if isinstance(error, IrlxError):
@@ -130,14 +131,11 @@ def _told(error: Exception) -> int:
         )
     elif isinstance(error, FileNotFoundError) and not _has_folder():
         found = (report("IRL002", path=".", cause="the working folder is gone"),)
-    elif _lacks_memory(error):
-        cause = "the memory that this process may use is used up"
-        found = (report("IRL090", help="let it use more; a larger --tick needs less", cause=cause),)
     elif os.environ.get("IRLX_DEBUG"):
         raise error
     else:
         # The last fence: a fault of irlx itself must still be a message, not a traceback.
-        found = (report("IRL090", cause=f"{type(error).__name__}: {error}"),)
+        found = (fault(error),)
     print_diagnostics(found)
     return exit_code(found)
 
@@ -149,12 +147,6 @@ def _has_folder() -> bool:
     except FileNotFoundError:
         return False
     return True
-
-
-def _lacks_memory(error: BaseException) -> bool:
-    """Whether an exception says so, that of a library which could not be loaded as well."""
-    words = ("failed to map segment", "cannot allocate memory")
-    return isinstance(error, MemoryError) or any(said in str(error).lower() for said in words)
 
 
 def entry_point() -> None:

@@ -17,8 +17,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from surrounded.place import Place, Trial, told
 
 IRLX = (sys.executable, "-m", "irlx")
-_BEFORE = 0.12
-"""Time (s) in which Python itself comes up, before irlx has a say."""
 
 
 def environment(more: Mapping[str, str | None] | None = None) -> dict[str, str]:
@@ -44,6 +42,13 @@ def done(
     return subprocess.run(call, env=environment(more), preexec_fn=prepare, check=False, **given)
 
 
+def _hears(process: subprocess.Popen[bytes]) -> bool:
+    """Whether irlx has a say by now: while Python itself comes up, signals end it in their own way."""
+    with open(f"/proc/{process.pid}/status") as status:
+        caught = next(int(line.split()[1], 16) for line in status if line.startswith("SigCgt"))
+    return bool(caught >> (signal.SIGTERM - 1) & 1)
+
+
 def _interruptible() -> None:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
@@ -64,6 +69,7 @@ def interrupts(place: Place, dice: random.Random, count: int) -> Iterator[Trial]
             preexec_fn=_interruptible,  # noqa: PLW1509
         )
         time.sleep(at)
+        early = process.poll() is None and not _hears(process)
         process.send_signal(signal.SIGINT)
         if again := dice.random() < 0.3:
             time.sleep(dice.uniform(0.0, 0.05))
@@ -71,8 +77,6 @@ def interrupts(place: Place, dice: random.Random, count: int) -> Iterator[Trial]
         _, errors = process.communicate(timeout=120)
         code, said = process.returncode, errors.decode()
         what = f"Ctrl-C {'twice ' if again else ''}at {at:.3f} of {took:.1f} s"
-        # While Python itself comes up nothing of irlx is there to hear it.
-        early = at < _BEFORE and ("Traceback" not in said or "irlx/cli" not in said)
         trial = Trial(what, code, [] if early else told(code, said, (0, 130)))
         if code == 130 and not early and said.count("irlx: interrupted") != 1:
             trial.faults.append(f"not one message: {said!r}")
@@ -92,12 +96,14 @@ def terminal(place: Place, dice: random.Random, count: int) -> Iterator[Trial]:
             stdin=slave, stdout=slave, stderr=slave, preexec_fn=_interruptible,  # noqa: PLW1509
         )  # fmt: skip
         which = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)[number % 3]
-        at = dice.uniform(_BEFORE, 1.6)
+        at = dice.uniform(0.1, 1.6)
         time.sleep(at)
+        early = process.poll() is None and not _hears(process)
         process.send_signal(which)
         shown = _shown(master, process)
         code = process.wait(60)
-        trial = Trial(f"{which.name} at {at:.3f} s on a terminal", code, told(code, shown, (0, 128 + which)))
+        trial = Trial(f"{which.name} at {at:.3f} s on a terminal", code)
+        trial.faults = [] if early else told(code, shown, (0, 128 + which))
         if shown.rfind("\x1b[?25l") > shown.rfind("\x1b[?25h"):
             trial.faults.append("the cursor stays hidden")
         if termios.tcgetattr(slave) != before:
