@@ -27,6 +27,12 @@ UNUSED = frozenset()
 CORPUS = sorted((Path(__file__).parent / "corpus" / "motions").iterdir())
 
 
+def _case(folder: Path):
+    """A finding; one that is not mended yet says so in open.txt, and fails here when it is mended."""
+    marks = [pytest.mark.xfail(strict=True)] if (folder / "open.txt").exists() else []
+    return pytest.param(folder, id=folder.name, marks=marks)
+
+
 @pytest.fixture(scope="module")
 def sample():
     return [drawn_case(seed) for seed in SAMPLE]
@@ -41,7 +47,7 @@ def test_a_drawn_program_is_carried_out_or_refused_at_its_place(tmp_path: Path, 
     assert not verdict.finding, verdict.finding
 
 
-@pytest.mark.parametrize("folder", CORPUS, ids=lambda folder: folder.name)
+@pytest.mark.parametrize("folder", [_case(folder) for folder in CORPUS])
 def test_what_was_found_once_stays_mended(tmp_path: Path, folder: Path) -> None:
     """What must hold is in its note: the program runs to its end, and everything about it is true."""
     for file in folder.iterdir():
