@@ -118,7 +118,10 @@ def test_ctrl_c_before_anything_moves(folder, environment, names, after):
     call = (
         "import os, signal, sys, threading, time; from irlx.cli.main import entry_point;"
         "signal.signal(signal.SIGINT, signal.default_int_handler);"
-        f"kill = lambda: (time.sleep({after}), os.kill(os.getpid(), signal.SIGINT));"
+        # Not before irlx can hear it.
+        "deaf = lambda: signal.getsignal(signal.SIGHUP) is signal.SIG_DFL;"
+        "waited = lambda: all(time.sleep(0.001) is None for _ in iter(deaf, False));"
+        f"kill = lambda: (waited(), time.sleep({after}), os.kill(os.getpid(), signal.SIGINT));"
         "threading.Thread(target=kill, daemon=True).start();"
         "entry_point()"
     )
