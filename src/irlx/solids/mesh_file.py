@@ -159,8 +159,13 @@ def _content(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
 
 def arrays_of(loaded: Any) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Vertices (V, 3) and faces (F, 3) of a mesh of trimesh. Raises MeshFileError."""
-    vertices = np.array(loaded.vertices, dtype=float).reshape(-1, 3)
-    faces = np.array(loaded.faces, dtype=np.int64).reshape(-1, 3)
+    vertices = np.array(loaded.vertices, dtype=float)
+    faces = np.array(loaded.faces, dtype=np.int64)
+    if vertices.size and vertices.shape[1:] != (3,):
+        raise MeshFileError("it holds vertices that have no three coordinates")
+    if faces.size and faces.shape[1:] != (3,):
+        raise MeshFileError("it holds faces that are no triangles")
+    vertices, faces = vertices.reshape(-1, 3), faces.reshape(-1, 3)
     if len(faces) and not (faces.min() >= 0 and faces.max() < len(vertices)):
         raise MeshFileError("it names vertices that it does not hold")
     return vertices, faces

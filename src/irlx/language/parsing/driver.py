@@ -156,7 +156,8 @@ class Driver:
 
     def insert(self, *kinds: str) -> None:
         """Feed tokens that the text lacks, placed at the end of the token before."""
-        end = self.previous_end
+        # Where the parse stops at a block that is too deep, its first word is taken but still the next token.
+        end = max(self.previous_end, self.blocks[-1].end_pos if self.blocks else 0)
         line = _line(self.previous) if self.previous is not None else 1
         for kind in kinds:
             text = kind if kind == "NAME" else kind.lower()
