@@ -115,6 +115,13 @@ def test_names_that_differ_in_case_alone(faults, table, value):
 
 
 @pytest.mark.req("CELL-01")
+def test_whole_numbers_beyond_all_others(faults):
+    ((code, key, message),) = faults(f"[signals.inputs]\nIN_1 = [[0, 1{'0' * 400}]]\n")
+    assert (code, key) == ("IRL603", "signals.inputs.IN_1")
+    assert "a list of pairs [time in s, value], true or false or a number, found [[0, 1000" in message
+
+
+@pytest.mark.req("CELL-01")
 @pytest.mark.parametrize("section", ["robot", "motion", "frames", "frames.f", "robot.locked", "robot.limits"])
 def test_sections_are_tables(faults, section):
     ((code, key, message),) = faults(f"{section} = 3\n")

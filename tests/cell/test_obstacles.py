@@ -204,6 +204,7 @@ FAULTS = [
     ('shape = "mesh"\nscale = 0', "IRL603", ".scale", "a number other than 0, or three of them"),
     ('shape = "mesh"\nscale = [1, 2]', "IRL603", ".scale", "a number other than 0"),
     ('shape = "mesh"\nscale = true', "IRL603", ".scale", "a number other than 0"),
+    (f'shape = "mesh"\nscale = 1{"0" * 400}', "IRL603", ".scale", "a number other than 0"),
     ('shape = "point"\ntrajectory = []', "IRL603", ".trajectory", "at least one table with time"),
     (
         'shape = "point"\ntrajectory = [{ time = -1, xyz = [0, 0, 0] }]',

@@ -11,6 +11,8 @@ import pytest
 
 import irlx
 from irlx.blocks import WaitBlock
+from irlx.cell.errors import CellError
+from irlx.cell.input_file import read_input_file
 from irlx.cli.main import main
 from irlx.streams import BlockRecord, read_stream
 
@@ -152,6 +154,19 @@ def test_values_of_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     told = capsys.readouterr().err
     assert [f"line {n}" in told for n in (2, 3, 4, 5)] == [True, True, False, True]
     assert "expected a time after 1 s for go, found 1" in told
+
+
+@pytest.mark.parametrize("end", ["\r", "\r\n", "\n"])
+def test_lines_of_a_file_end_in_any_way(tmp_path: Path, end: str) -> None:
+    (tmp_path / "in.csv").write_bytes(end.join(["time,input,value", "0,go,FALSE", "0.5,go,TRUE"]).encode())
+    assert read_input_file(tmp_path / "in.csv") == {"go": ((0.0, 0.0), (0.5, 1.0))}
+
+
+def test_a_field_that_no_csv_holds(tmp_path: Path) -> None:
+    (tmp_path / "in.csv").write_text(f"time,input,value\n0,go,1\n1,{'x' * 200_000},1\n", encoding="utf-8")
+    with pytest.raises(CellError) as caught:
+        read_input_file(tmp_path / "in.csv")
+    assert (caught.value.reason.code, caught.value.reason.place.key) == ("IRL618", "line 3")
 
 
 @pytest.mark.req("LANG-43")

@@ -356,3 +356,11 @@ def test_in_frame():
     assert body("reconfiguration k in { there } frame pipe;") == [
         "RECONFIGURATION k IN { there } FRAME pipe;"
     ]
+
+
+@pytest.mark.req("LANG-74")
+def test_a_comment_that_holds_the_beginning_of_another_one():
+    """There is a warning of it, IRL126, before and after: no reason to leave the text as it is."""
+    text = "PROGRAM p;\nBEGIN\n  { count\n  x := 1;\n  { on }\nENDPROGRAM\n"
+    assert format_source(text) == text
+    assert format_source(text.replace("\n  { on", "\n     { on")).count("{") == 2

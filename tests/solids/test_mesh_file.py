@@ -1,7 +1,9 @@
 """Mesh files: sizes known in closed form, faults, and what another library makes of the same files."""
 
+import logging
 import os
 import sys
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -44,6 +46,19 @@ def test_scales_that_mirror_leave_the_faces_outwards(mesh, scale):
     found = read_closed_mesh(mesh("s.stl", stl(CUBE, TRIANGLES), scale))
     assert found.volume == pytest.approx(abs(np.prod(scale)), rel=1e-6)
     assert found.vertices.max(axis=0) == pytest.approx(np.maximum(scale, 0.0))
+
+
+@pytest.mark.parametrize("scale", [(1e-150, -1e-150, -1e-150), (-1e9, 1e9, -1e9)])
+def test_scales_whose_product_is_out_of_range(mesh, scale):
+    found = read_mesh(mesh("s.stl", stl(CUBE, TRIANGLES), scale))
+    faces = read_mesh(mesh("t.stl", stl(CUBE, TRIANGLES))).faces
+    assert np.array_equal(found.faces, faces)
+
+
+@pytest.mark.parametrize("scale", [(1e308, 1e308, 1e308), (1.0, 1e13, 1.0)])
+def test_scales_at_which_nothing_is_a_length(mesh, scale):
+    with pytest.raises(MeshFileError, match="its scale makes coordinates of it that are no lengths"):
+        read_mesh(mesh("s.stl", stl(CUBE, TRIANGLES), scale))
 
 
 def test_the_unit_of_collada_counts_and_its_upward_axis_does_not(mesh):
@@ -95,6 +110,7 @@ BROKEN = {
     "nan.obj": (b"v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "it holds coordinates that are no lengths"),
     "far.obj": (b"v 1e300 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "it holds coordinates that are no lengths"),
     "index.obj": (b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "it is no whole OBJ file"),
+    "row.obj": (b"v 0\nv 1\nf 3\nv 1", "it holds vertices that have no three coordinates"),
     "cut.ply": (b"ply\nformat ascii 1.0\n", "it is no whole PLY file"),
     "count.stl": (b"\0" * 80 + b"\xff\xff\xff\x7f", "it is no whole STL file"),
     "other.dae": (b"<robot/>", "it is no whole DAE file"),
@@ -129,6 +145,16 @@ def test_files_cut_off_or_altered_are_read_or_refused(mesh, seed):
     if found is not None:
         assert np.all(np.isfinite(found.vertices)), seed
         assert found.faces.max() < len(found.vertices), seed
+
+
+def test_a_broken_file_does_not_speak_on_the_terminal(mesh, monkeypatch):
+    """Trimesh logs a traceback of this one; without a handler Python prints what is logged."""
+    spoken = []
+    monkeypatch.setattr(logging.root, "handlers", [])
+    monkeypatch.setattr(logging, "lastResort", SimpleNamespace(level=0, handle=spoken.append))
+    with pytest.raises(MeshFileError):
+        read_mesh(mesh("x.stl", b"solid x\nfacet normal a b c\nouter loop\nvertex 1 2\nendloop\nendfacet\n"))
+    assert not spoken
 
 
 def test_missing_files(tmp_path):

@@ -26,7 +26,7 @@ def read_input_file(path: Path) -> dict[str, tuple[tuple[float, float], ...]]:
         text = read_bytes(path).decode("utf-8-sig")
     except UnicodeDecodeError as cause:
         raise CellError(_fault(path, 1, "UTF-8", f"byte {cause.start}")) from cause
-    lines = list(csv.reader(io.StringIO(text)))
+    lines = _lines(text, path)
     head = [cell.strip().casefold() for cell in lines[0]] if lines else []
     if head != HEADER:
         raise CellError(_fault(path, 1, f"the header {','.join(HEADER)}", ",".join(head) or "nothing"))
@@ -48,6 +48,15 @@ def read_input_file(path: Path) -> dict[str, tuple[tuple[float, float], ...]]:
     if faults:
         raise CellError(faults)
     return {name: tuple(trace) for name, trace in traces.items()}
+
+
+def _lines(text: str, path: Path) -> list[list[str]]:
+    """Fields of all lines, whichever way these end. Raises CellError for what no CSV holds."""
+    reader = csv.reader(io.StringIO(text, newline=""))
+    try:
+        return list(reader)
+    except csv.Error as cause:
+        raise CellError(_fault(path, reader.line_num, _ENTRY, str(cause))) from cause
 
 
 def _entry(line: list[str]) -> tuple[str, float, float] | None:

@@ -33,15 +33,16 @@ def limit_entry(entry: object) -> LimitEntry:
     # Compared by identity: 0 equals False, and a limit of 0 is a limit.
     if entry is False:
         return LimitEntry(-inf, inf, "false")
-    if _is_number(entry):
+    if is_number(entry):
         return LimitEntry(-float(entry), float(entry), f"{entry:.12g}")  # type: ignore[arg-type]
-    if isinstance(entry, list) and len(entry) == 2 and all(_is_number(bound) for bound in entry):
+    if isinstance(entry, list) and len(entry) == 2 and all(is_number(bound) for bound in entry):
         lower, upper = entry
         return LimitEntry(float(lower), float(upper), f"[{lower:.12g}, {upper:.12g}]")
     raise PydanticCustomError("limit", _ENTRY_WORDS)
 
 
-def _is_number(value: object) -> bool:
+def is_number(value: object) -> bool:
+    """Whether a value of a file is a finite number, and no true or false."""
     if not isinstance(value, int | float) or isinstance(value, bool):
         return False
     try:

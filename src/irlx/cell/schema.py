@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from math import isfinite
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, PlainValidator
 from pydantic_core import PydanticCustomError
 
-from irlx.cell.limit_entry import Limits
+from irlx.cell.limit_entry import Limits, is_number
 from irlx.language.builtins import SYSTEM_VARIABLES
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
@@ -43,17 +42,16 @@ def _trace(found: Any) -> Trace:
 
 
 def _is_entry(entry: Any) -> bool:
-    if not (isinstance(entry, list) and len(entry) == 2 and not isinstance(entry[0], bool)):
+    if not (isinstance(entry, list) and len(entry) == 2):
         return False
-    numbers = all(isinstance(part, int | float) and isfinite(part) for part in entry)
-    return numbers and entry[0] >= 0.0
+    at, value = entry
+    return is_number(at) and at >= 0.0 and (isinstance(value, bool) or is_number(value))
 
 
 def _scale(found: Any) -> tuple[float, float, float]:
     """What a mesh is scaled by along x, y, z; one number stands for all three."""
     factors = found if isinstance(found, list) else [found] * 3
-    numbers = all(isinstance(f, int | float) and not isinstance(f, bool) and isfinite(f) for f in factors)
-    if len(factors) != 3 or not numbers or not all(factors):
+    if len(factors) != 3 or not all(map(is_number, factors)) or not all(factors):
         raise PydanticCustomError("scale", "a number other than 0, or three of them")
     x, y, z = (float(factor) for factor in factors)
     return x, y, z

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable
 from functools import cache, lru_cache
 from importlib import import_module
@@ -38,6 +39,7 @@ _FARTHEST = 1e12
 _KEPT = 256
 _MOST_BYTES = 256_000_000
 """Of a mesh file."""
+_QUIET = logging.NullHandler()
 
 
 class MeshFileError(ValueError):
@@ -99,13 +101,25 @@ def _read(mesh: Mesh, modified: int, size: int) -> Triangles:
     vertices, faces = joined(*_content(Path(mesh.file)))
     if len(faces) == 0:
         raise MeshFileError("it holds no triangles")
-    scale = np.array(mesh.scale)
-    if np.prod(scale) < 0.0:
-        faces = faces[:, ::-1]
-    found = Triangles(vertices * scale, faces)
+    found = scaled(vertices, faces, mesh)
     for array in (found.vertices, found.faces):
         array.setflags(write=False)
     return found
+
+
+def scaled(vertices: NDArray[np.float64], faces: NDArray[np.int64], mesh: Mesh) -> Triangles:
+    """Surface of vertices (V, 3) and faces (F, 3) of a mesh's file at the scale of the mesh, faces outwards.
+
+    Raises MeshFileError for a scale at which coordinates are no lengths.
+    """
+    scale = np.array(mesh.scale)
+    with np.errstate(over="ignore"):
+        points = vertices * scale
+    if not np.all(np.abs(points) < _FARTHEST):
+        raise MeshFileError("its scale makes coordinates of it that are no lengths")
+    # Signs are counted: a product of three factors may be out of range where each of them is in it.
+    mirrors = np.count_nonzero(scale < 0.0) % 2 == 1
+    return Triangles(points, faces[:, ::-1] if mirrors else faces)
 
 
 def missing_package(mesh: Mesh) -> str:
@@ -187,6 +201,8 @@ def read_with_trimesh(path: Path, reader: Callable[[Path], Read]) -> Read:
             import_module(module)
         except ImportError as cause:
             raise MeshReaderMissing(f"the package {package} is not installed") from cause
+    # Of what is broken it logs a traceback, which without any handler would come up on the terminal.
+    logging.getLogger("trimesh").addHandler(_QUIET)
     try:
         return reader(path)
     except Exception as cause:

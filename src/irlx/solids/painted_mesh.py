@@ -10,7 +10,15 @@ from typing import Any
 import numpy as np
 
 from irlx.solids.colour import Colour
-from irlx.solids.mesh_file import MeshFileError, arrays_of, joined, read_mesh, read_with_trimesh, state_of
+from irlx.solids.mesh_file import (
+    MeshFileError,
+    arrays_of,
+    joined,
+    read_mesh,
+    read_with_trimesh,
+    scaled,
+    state_of,
+)
 from irlx.solids.shape import Mesh
 from irlx.solids.triangles import Triangles
 
@@ -78,6 +86,4 @@ def _surface(parts: list[Any], mesh: Mesh) -> Triangles:
         vertices.append(points)
         faces.append(corners + before)
         before += len(points)
-    points, corners = joined(np.concatenate(vertices), np.concatenate(faces))
-    scale = np.array(mesh.scale)
-    return Triangles(points * scale, corners[:, ::-1] if np.prod(scale) < 0.0 else corners)
+    return scaled(*joined(np.concatenate(vertices), np.concatenate(faces)), mesh)

@@ -17,12 +17,16 @@ class Rates:
         self._qd: Floats | None = None
 
     def of(self, ticks: Integers, q: Floats) -> StatedRates:
-        """t (N,), s, and qd, qdd (N, n) of the next rows: ticks (N,) and q (N, n)."""
+        """t (N,), s, and qd, qdd (N, n) of the next rows: ticks (N,) and q (N, n).
+
+        Rates beyond all numbers, of values near the largest ones, are not finite; who asks looks at that.
+        """
         t = ticks * self._tick_ns / 1e9
         if not len(q):
             return StatedRates(t, q, q)
-        qd = _differences(q, self._q, self._dt)
-        qdd = _differences(qd, self._qd, self._dt)
+        with np.errstate(over="ignore", invalid="ignore"):
+            qd = _differences(q, self._q, self._dt)
+            qdd = _differences(qd, self._qd, self._dt)
         self._q, self._qd = q[-1:].copy(), qd[-1:].copy()
         return StatedRates(t, qd, qdd)
 

@@ -22,6 +22,7 @@ from irlx.diagnostics.codes.static_types import STATIC_TYPES
 from irlx.diagnostics.codes.syntax import SYNTAX
 from irlx.diagnostics.codes.types import TYPES
 from irlx.diagnostics.rendering import MACHINE_FORMATS
+from irlx.language import tree
 from irlx.language.format import format_source
 from irlx.language.parser import parse
 from irlx.language.source import source_text
@@ -34,6 +35,8 @@ CODES = tuple(
 """Codes that a check of a text may give."""
 _THOROUGH, _FORMATTED = 16, 4
 """One case of so many is looked at from all sides, one of so many is formatted if it is accepted."""
+_MOST_ERRORS = 60
+"""Errors of the syntax: twenty of a program, and as many of a data list and of a module."""
 _PORT = re.compile(r"(?i)\ba?(?:in|out)_[0-9]")
 
 
@@ -77,7 +80,10 @@ class LanguageJudge:
         thorough = chosen % _THOROUGH == 0 if thorough is None else thorough
         for one in found:
             look_at(one, thorough)
+        if sum(one.is_error and one.code.startswith("IRL1") for one in found) > _MOST_ERRORS:
+            raise Fault("more errors than one wants to read")
         if thorough:
+            self._look_at_tree(case.content)
             if check(self._path) != found:
                 raise Fault("another check says something else", found[0].code if found else "")
             for name, rendered in MACHINE_FORMATS.items():
@@ -88,6 +94,18 @@ class LanguageJudge:
             self._format(parts_of(case.content)[0][1], thorough)
         codes = frozenset(one.code for one in found)
         return Outcome(accepted, codes, frozenset([*map(wording, found), (len(codes), accepted)]))
+
+    def _look_at_tree(self, content: bytes) -> None:
+        """All nodes lie in the text; a tree can be compared, kept in a set and printed."""
+        text = parts_of(content)[0][1].decode("utf-8", "replace")
+        source = source_text("t", text)
+        root = parse(source).tree
+        if root is None:
+            return
+        if any(node.span.end > len(source.text) for node in tree.walk(root)):
+            raise Fault("a node behind the end of the text")
+        hash(root)
+        repr(root)
 
     def _write(self, content: bytes) -> None:
         for path in self._beside:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import resource
 import signal
 import sys
@@ -25,6 +26,17 @@ GROWTH = 256 << 20
 _SOURCE = "/src/irlx/"
 _FRAMES = 2
 """Functions that a fault is known by."""
+
+
+class _Spoken(logging.Handler):
+    """Gets what libraries log where nobody listens, which would come up on the terminal."""
+
+    def __init__(self) -> None:
+        super().__init__(logging.WARNING)
+        self.words: list[str] = []
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self.words.append(f"{record.name}: {record.getMessage()}")
 
 
 class TooLong(BaseException):
@@ -52,7 +64,8 @@ def peak() -> int:
 def bounded(size: int) -> Iterator[None]:
     """Run what is inside within the bounds of an input of `size` bytes. Raises Fault and nothing else."""
     allowed = SECONDS + SECONDS_A_MEGABYTE * size / 1e6
-    before = peak()
+    before, spoken, listening = peak(), _Spoken(), (logging.lastResort, logging.root.handlers)
+    logging.lastResort, logging.root.handlers = spoken, []
     signal.signal(signal.SIGPROF, _ring)
     signal.setitimer(signal.ITIMER_VIRTUAL, allowed + HARD_SECONDS)
     signal.setitimer(signal.ITIMER_PROF, allowed)
@@ -69,6 +82,9 @@ def bounded(size: int) -> Iterator[None]:
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0)
         signal.setitimer(signal.ITIMER_VIRTUAL, 0)
+        logging.lastResort, logging.root.handlers = listening
+    if spoken.words:
+        raise Fault("a library speaks on the terminal", spoken.words[0], "\n".join(spoken.words))
     grown = peak() - before
     if grown > GROWTH:
         raise Fault("too much memory", "", f"{grown >> 20} MB more than before")

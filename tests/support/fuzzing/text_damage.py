@@ -187,7 +187,7 @@ def replace(tokens: Tokens, chance: Random) -> None:
     """A token becomes one of another text, mostly of the same sort."""
     at, other = place(tokens, chance), known_tokens(chance)
     alike = [token for token in other if _sort(token) == _sort(tokens[at])]
-    tokens[at] = chance.choice(alike if alike and chance.random() < 0.7 else other or ("x",))
+    tokens[at] = chance.choice(alike if alike and chance.random() < 0.85 else other or ("x",))
 
 
 def renamed(tokens: Tokens, chance: Random) -> None:
@@ -281,15 +281,29 @@ def line_ends(tokens: Tokens, chance: Random) -> None:
 
 
 DAMAGES: tuple[Callable[[Tokens, Random], None], ...] = (
-    *(delete, delete, swap, duplicate, replace, replace, replace, renamed, renamed, insert_word, insert_word),
-    *(number, strange, look_alike, spelling, deep, splice, graft, graft, lines, cut_off, line_ends),
+    *(
+        delete,
+        delete,
+        swap,
+        duplicate,
+        replace,
+        replace,
+        replace,
+        replace,
+        renamed,
+        renamed,
+        renamed,
+        renamed,
+    ),
+    *(insert_word, insert_word, number, number, number, strange, look_alike, spelling, deep, splice),
+    *(graft, graft, lines, lines, cut_off, line_ends),
 )
 
 
 def damaged(text: str, chance: Random) -> str:
     """A text damaged in some places."""
     tokens = list(tokens_of(text))
-    for _ in range(min(1 + int(chance.expovariate(0.6)), 8)):
+    for _ in range(1 + int(min(chance.expovariate(1.0), 7.0))):
         if not tokens:
             tokens = list(known_tokens(chance)) or ["x"]
         chance.choice(DAMAGES)(tokens, chance)
