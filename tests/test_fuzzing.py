@@ -102,6 +102,9 @@ class Odd:
     def draw(self, chance, pool):
         return Case("odd", b"fine %d" % chance.randrange(10**9))
 
+    def patience(self, kind):
+        return 1.0
+
     def judge(self, case, thorough=None):
         for word, happens in WORDS.items():
             if word in case.content:

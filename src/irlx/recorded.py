@@ -22,6 +22,7 @@ from irlx.blocks import (
     ReconfigureBlock,
     SignalBlock,
 )
+from irlx.blocks.sense import senseless
 from irlx.cell.cell import Cell
 from irlx.cell.errors import CellError
 from irlx.cell.find import find_cell
@@ -31,6 +32,7 @@ from irlx.diagnostics.whole_file import whole_file
 from irlx.language.source import decode_source
 from irlx.language.suppression import Ignore
 from irlx.pacing.inputs import Inputs
+from irlx.streams.error import broken
 from irlx.streams.formats import KNOWN_ENDINGS, format_of, scan_stream
 from irlx.streams.joint_stream import BlockRecord, StreamHeader
 from irlx.streams.scan import RowBatch, StreamEnd
@@ -123,8 +125,8 @@ def is_recorded(path: Path) -> bool:
 def recorded(path: Path) -> Recorded:
     """The execution that a stream file holds.
 
-    Raises StreamError where it cannot be read; IrlxError: IRL725 for one without blocks, IRL726 for one that
-    did not come to its end.
+    Raises StreamError where it cannot be read, IRL701 also for a block that nobody could carry out;
+    IrlxError: IRL725 for one without blocks, IRL726 for one that did not come to its end.
     """
     if not format_of(path).carries_blocks:
         with_blocks = ", ".join(ending for ending in KNOWN_ENDINGS if format_of(f"x{ending}").carries_blocks)
@@ -135,6 +137,9 @@ def recorded(path: Path) -> Recorded:
     records, complete = [], False
     for item in scan:
         if isinstance(item, BlockRecord):
+            wrong = senseless(item.block, len(header.joint_names))
+            if wrong:
+                raise broken(path, format_of(path).title, wrong, f"block {item.block.id}")
             records.append(item)
         elif isinstance(item, StreamEnd):
             complete = item.complete

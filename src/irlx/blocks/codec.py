@@ -14,7 +14,7 @@ from functools import cache
 from math import isfinite
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
-from irlx.blocks.block import Block, HaltBlock, PauseBlock
+from irlx.blocks.block import Block, HaltBlock, Origin, PauseBlock
 from irlx.blocks.criterion import CriterionBlock
 from irlx.blocks.move import ArcCourse, MoveBlock
 from irlx.blocks.obstacle import ObstacleBlock
@@ -143,7 +143,10 @@ def _dataclass_from(kind: Any, plain: object, where: str) -> Any:
             values[name] = _decode(hints[name], plain[name], _join(where, name))
         elif not may_miss:
             raise BlockFormError(f"{_join(where, name)}: missing")
-    return kind(**values)
+    found = kind(**values)
+    if isinstance(found, Origin) and not 0 <= found.start <= found.end:
+        raise BlockFormError(f"{where}: needs 0 <= start <= end, found {found.start} and {found.end}")
+    return found
 
 
 def _join(where: str, name: str) -> str:

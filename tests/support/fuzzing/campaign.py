@@ -43,13 +43,16 @@ class Judge(Protocol):
     def draw(self, chance: Random, pool: Sequence[Case]) -> Case:
         """The next case."""
 
+    def patience(self, kind: str) -> float:
+        """How many times the usual time a case of this kind may take."""
+
     def judge(self, case: Case, thorough: bool | None = None) -> Outcome:
         """What came of it. Raises Fault; whatever else it raises is a fault as well."""
 
 
 def judged(judge: Judge, case: Case, thorough: bool | None = None) -> Outcome:
     """Judge a case within bounds of time and memory. Raises Fault alone."""
-    with bounded(len(case.content)):
+    with bounded(len(case.content), judge.patience(case.kind)):
         return judge.judge(case, thorough)
 
 

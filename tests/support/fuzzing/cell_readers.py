@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterable
-from contextlib import suppress
 from pathlib import Path
 from random import Random
 
@@ -13,6 +12,7 @@ import numpy as np
 
 from fuzzing.byte_damage import TEXT, damaged
 from fuzzing.case import Fault
+from fuzzing.findings import INTERNAL
 from fuzzing.known_texts import ROOT
 from fuzzing.reader import Reader
 from fuzzing.robot_files import put_beside
@@ -178,8 +178,10 @@ class CellReader(Reader):
         told = list(appearance_of(cell).robot.diagnostics)
         job = prepare(self._program, self._path)
         header_to_plain(header_of(job))
-        with suppress(IrlxError):
+        try:
             run(self._program, cell=self._path)
+        except IrlxError as error:
+            told += [one for one in error.diagnostics if one.code == INTERNAL]
         return told
 
 

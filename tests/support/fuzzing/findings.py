@@ -12,6 +12,7 @@ from irlx.diagnostics.plain import plain_diagnostic
 from irlx.diagnostics.text import render_text
 
 _BARE_OBJECT = re.compile(r" object at 0x|<class '|<function |Traceback \(most")
+INTERNAL = "IRL090"
 _VALUES = re.compile(r"'[^']*'|[0-9]+")
 _NEEDS_NO_PLACE = "IRL0"
 """Codes of the command line tell of files and options as a whole."""
@@ -19,6 +20,8 @@ _NEEDS_NO_PLACE = "IRL0"
 
 def look_at(found: Diagnostic, thorough: bool = False) -> None:
     """Raises Fault for a finding that is not as it has to be."""
+    if found.code == INTERNAL:
+        raise Fault("an internal error", "", found.message)
     if found.code not in CATALOGUE:
         raise Fault("no such code", found.code)
     if found.place is None and not found.code.startswith(_NEEDS_NO_PLACE):

@@ -72,6 +72,10 @@ class LanguageJudge:
         """Undamaged programs."""
         return [partial(Case, KIND, text.encode("utf-8", "replace")) for text in known_texts()]
 
+    def patience(self, kind: str) -> float:
+        """A check may take as long as anything."""
+        return 1.0
+
     def judge(self, case: Case, thorough: bool | None = None) -> Outcome:
         """What the check says of a case. Raises Fault, or what the check itself raises."""
         self._write(case.content)

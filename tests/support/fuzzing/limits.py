@@ -61,9 +61,12 @@ def peak() -> int:
 
 
 @contextmanager
-def bounded(size: int) -> Iterator[None]:
-    """Run what is inside within the bounds of an input of `size` bytes. Raises Fault and nothing else."""
-    allowed = SECONDS + SECONDS_A_MEGABYTE * size / 1e6
+def bounded(size: int, patience: float = 1.0) -> Iterator[None]:
+    """Run what is inside within the bounds of an input of `size` bytes. Raises Fault and nothing else.
+
+    `patience` times as long as the bounds say.
+    """
+    allowed = patience * (SECONDS + SECONDS_A_MEGABYTE * size / 1e6)
     before, spoken, listening = peak(), _Spoken(), (logging.lastResort, logging.root.handlers)
     logging.lastResort, logging.root.handlers = spoken, []
     signal.signal(signal.SIGPROF, _ring)

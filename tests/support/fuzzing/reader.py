@@ -20,6 +20,8 @@ class Reader(ABC):
     ending: str
     share: float = 1.0
     """How often it has its turn, beside the others."""
+    patience: float = 1.0
+    """How many times as long as others it may take."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder

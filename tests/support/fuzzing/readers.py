@@ -10,6 +10,7 @@ from random import Random
 from fuzzing.case import Case, Outcome
 from fuzzing.cell_readers import CellReader, InputsReader
 from fuzzing.reader import Reader
+from fuzzing.replays import ReplayReader
 from fuzzing.robot_readers import MeshReader, SrdfReader, UrdfReader
 from fuzzing.stream_readers import stream_readers
 from irlx.diagnostics.codes.cell import CELL
@@ -38,6 +39,7 @@ class ReadersJudge:
         found += [UrdfReader(inside("urdf")), SrdfReader(inside("srdf"))]
         found += [MeshReader(inside(ending), ending) for ending in WRITERS]
         found += stream_readers(inside("streams"))
+        found += [ReplayReader(inside(f"replay{ending[1:]}"), ending) for ending in (".irdata", ".jsonl")]
         self.readers = {reader.kind: reader for reader in found}
         self.endings = {reader.kind: reader.ending for reader in found}
 
@@ -57,6 +59,10 @@ class ReadersJudge:
         own = [case.content for case in pool[-_POOL_EACH:] if case.kind == reader.kind]
         content = chance.choice(own if own and chance.random() < 0.3 else reader.sound)
         return Case(reader.kind, reader.damaged(content, chance))
+
+    def patience(self, kind: str) -> float:
+        """How many times as long as others a reader may take."""
+        return self.readers[kind].patience
 
     def judge(self, case: Case, thorough: bool | None = None) -> Outcome:
         """What came of a case."""
