@@ -106,3 +106,31 @@ def test_all_that_is_wrong_with_a_call_is_told(told_of, statement: str, codes: s
     PROCEDURE go(REAL: r); BEGIN ENDPROC; FUNCTION twice(REAL: r): REAL; BEGIN RETURN r * 2; ENDFCT;
     BEGIN {statement} ENDPROGRAM"""
     assert {code for code, _, _ in told_of(text)} == codes
+
+
+@pytest.mark.req("LANG-62")
+@pytest.mark.parametrize(
+    ("excess", "told"), [(0.9e-6, False), (1.2e-6, True), (-0.9e-6, False), (-1.2e-6, True)]
+)
+def test_how_far_from_one_the_length_of_a_quaternion_may_be(told_of, excess: float, told: bool) -> None:
+    text = f"PROGRAM t; VAR ORIENTATION: o; BEGIN o := ORIENTATION({1.0 + excess:.9f}, 0, 0, 0); ENDPROGRAM"
+    assert [code for code, _, _ in told_of(text)] == ["IRL230"] * told
+
+
+@pytest.mark.req("LANG-62")
+@pytest.mark.parametrize(
+    ("bands", "marked"), [("0, 0, 0, 0, 0, 0", []), ("0, -1, 0, 2, 0, -0.5", ["-1", "-0.5"])]
+)
+def test_bands_of_less_than_nothing(told_of, bands: str, marked: list[str]) -> None:
+    found = told_of(f"PROGRAM t; VAR POSE: p; BEGIN MOVE LIN p WITH TOLERANCE ({bands}); ENDPROGRAM")
+    assert [(code, text) for code, _, text in found] == [("IRL505", value) for value in marked]
+
+
+def test_uses_of_names_come_in_the_order_of_the_text(analysed) -> None:
+    """Whatever has to be looked at last, as files that are read from."""
+    text = """PROGRAM t; VAR FILE: points; REAL: x, sum := 0; INT: n := 0;
+    BEGIN OPEN(points, 'points.txt', 'READ'); WHILE NOT EOF(points) DO READ(points, x); sum := sum + x;
+    n := n + 1; ENDWHILE; CLOSE(points); WRITELN(n, ' numbers, sum ', sum:0:3); ENDPROGRAM"""
+    starts = [reference.span.start for reference in analysed(text).references]
+    assert len(starts) > 10
+    assert starts == sorted(starts)
