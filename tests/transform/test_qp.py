@@ -10,7 +10,7 @@ import pytest
 from scipy.optimize import linprog
 
 from irlx.transform.qp.active_set import sharpen
-from irlx.transform.qp.dual import DualSolver
+from irlx.transform.qp.dual import DualSolver, _lost
 from irlx.transform.qp.interval import IntervalSolver
 from irlx.transform.qp.proxqp import ProxQpSolver
 
@@ -250,3 +250,18 @@ def test_a_right_guess_saves_the_dual_solver_all_steps(monkeypatch) -> None:
 
     monkeypatch.setattr("irlx.transform.qp.dual._Iteration._take_in", never)
     np.testing.assert_array_equal(DualSolver().solve(rows, lower, upper, active).active, active)
+
+
+@pytest.mark.parametrize(
+    ("rows", "lost"),
+    [
+        ([[1.0, 0.0], [0.0, 1e-3]], False),
+        ([[1.0, 0.0], [1.0, 1e-9]], True),
+        ([[1.0, 2.0], [1.0, 2.0]], True),
+        ([[0.3, 0.0]], False),
+        ([[0.0, 0.0]], True),
+    ],
+)
+def test_rows_that_depend_on_each_other_are_no_guess(rows, lost: bool) -> None:
+    matrix = np.array(rows)
+    assert _lost(matrix @ matrix.T, len(rows)) is lost
