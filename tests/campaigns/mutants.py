@@ -38,7 +38,7 @@ try:
 except ModuleNotFoundError:  # Python 3.10
     import tomli as tomllib
 
-CHECKS = (
+CHECKS = [
     "checking",
     "lints",
     "names.py",
@@ -47,7 +47,7 @@ CHECKS = (
     "criteria.py",
     "obstacles.py",
     "labels.py",
-)
+]
 FOLDERS = {
     "motion": (("motion",), "tests/motion"),
     "transform": (("transform",), "tests/transform"),

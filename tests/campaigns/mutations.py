@@ -218,6 +218,8 @@ def _is_none(node: ast.AST) -> bool:
 
 def _of_constant(node: ast.Constant, parent: ast.AST) -> Iterator[tuple[str, ast.AST]]:
     value = node.value
+    if isinstance(parent, ast.keyword) and parent.arg == "strict":
+        return
     if isinstance(value, bool):
         yield "constant", ast.Constant(not value)
     elif isinstance(value, int):
@@ -228,7 +230,7 @@ def _of_constant(node: ast.Constant, parent: ast.AST) -> Iterator[tuple[str, ast
 
 
 def _of_computation(node: ast.BinOp, parent: ast.AST) -> Iterator[tuple[str, ast.AST]]:
-    if isinstance(node.op, ast.MatMult):
+    if isinstance(node.op, ast.MatMult) and ast.dump(node.left) != ast.dump(node.right):
         yield "operands", ast.BinOp(node.right, node.op, node.left)
     typed = isinstance(node.op, ast.BitOr) and isinstance(parent, ast.Call | ast.BinOp)
     of_texts = any(isinstance(side, _TEXTS) and not _is_number(side) for side in (node.left, node.right))
@@ -245,7 +247,7 @@ def _of_call(node: ast.Call) -> Iterator[tuple[str, ast.AST]]:
     if called in {"isinstance", "getattr", "hasattr", "TypeVar", "field", "report"}:
         return
     plain = not any(isinstance(one, ast.Starred) for one in node.args)
-    if called in {"abs", "clip", "sorted", "float"} and node.args and plain:
+    if called in {"abs", "clip", "sorted"} and node.args and plain:
         yield "call left out", node.args[0]
     if called == "range" and plain:
         stop = 0 if len(node.args) == 1 else 1
