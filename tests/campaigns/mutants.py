@@ -6,7 +6,6 @@ damaged lines, quickest first, in a process of its own: a fork of one that has c
 the damaged function has been given another body. What runs while modules are imported is damaged before they
 are, in a fork that has only the libraries. A test that takes far longer than it should notices, too.
 
-    python tests/campaigns/mutants.py --mutants 500 --seed 1
     python tests/campaigns/mutants.py --mutants 500 --seed 1 --folder motion
     python tests/campaigns/mutants.py --only motion/arc.py#12 motion/arc.py#40
 """
