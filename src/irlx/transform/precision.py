@@ -24,6 +24,9 @@ MAX_ITERATIONS = 30
 MAX_NEWTON_STEP = 0.5
 """Largest change of a joint (rad or m) in one Newton step; longer ones are shortened as a whole."""
 
+RESTRAINTS = (0.01, 0.1, 1.0, 10.0)
+"""How a criterion on whose minimum a tick does not settle is held back, tried in turn: see `Restrained`."""
+
 SINGULAR_RATIO = 1e-4
 """Smallest over largest singular value of the scaled Jacobian below which iterates are damped."""
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from irlx.robot.kinematics import Kinematics
 from irlx.transform.compact import Step, StepProblem, bounded_step, free_step
+from irlx.transform.criteria.restrained import Restrained
 from irlx.transform.criterion_pace import CriterionPace
 from irlx.transform.metric import solved
 from irlx.transform.nearest import Nearest, damped_step, nearest_in_bounds, scaled_singular_values
@@ -18,6 +19,7 @@ from irlx.transform.precision import (
     AT_BOUND,
     MAX_ITERATIONS,
     MAX_NEWTON_STEP,
+    RESTRAINTS,
     SINGULAR_RATIO,
 )
 from irlx.transform.qp.solver import QpSolver
@@ -108,6 +110,9 @@ class TickSolver:
             second = self._newton(problem, nearest.q - problem.q)
             if isinstance(second, TickSolution):
                 return second
+            restrained = self._restrained(problem)
+            if restrained is not None:
+                return restrained
         if problem.clearance is not None:
             unaware = self.solve(problem._replace(clearance=None))
             if unaware.solved:
@@ -161,6 +166,19 @@ class TickSolver:
                 q = np.where(free, problem.q + whole, problem.q)
                 return TickSolution(TickStatus.SOLVED, q, active, step_problem.twist, iteration)
         return TickStatus.NOT_CONVERGED
+
+    def _restrained(self, problem: TickProblem) -> TickSolution | None:
+        """A step on the path with the criterion held back, as little as will do; None where there is none.
+
+        The path must not pay for a criterion on whose minimum the steps do not settle.
+        """
+        nothing = np.zeros(problem.q.size)
+        for restraint in RESTRAINTS:
+            held = problem._replace(criterion=Restrained(problem.criterion, restraint))
+            found = self._newton(held, nothing)
+            if isinstance(found, TickSolution):
+                return found
+        return None
 
     def newton_problem(self, problem: TickProblem, whole: Array) -> tuple[StepProblem, Array]:
         """The Newton step at the iterate `whole` (step since the start of the tick), free joints only.

@@ -1,0 +1,84 @@
+"""A criterion that is held back: what it is, and ticks that need it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import approx_fprime
+from scipy.spatial.transform import Rotation
+
+from irlx.transform.criteria.criterion import Array, Criterion
+from irlx.transform.criteria.posture import Posture
+from irlx.transform.criteria.restrained import Restrained
+from irlx.transform.metric import times
+from irlx.transform.tick import TickSolver
+
+
+class Flat(Criterion):
+    """1/2 S' H S, which grows in a few directions only."""
+
+    name = "flat"
+
+    def __init__(self, rows: Array, little: float = 1e-6) -> None:
+        self._hessian = rows.T @ rows + little * np.eye(rows.shape[1])
+
+    def value(self, q: Array, step: Array) -> float:
+        return 0.5 * float(step @ self._hessian @ step)
+
+    def gradient(self, q: Array, step: Array) -> Array:
+        return self._hessian @ step
+
+    def hessian(self) -> Array:
+        return self._hessian
+
+
+def base(kind: str, rng: np.random.Generator) -> Criterion:
+    if kind == "whole":
+        return Flat(rng.normal(size=(3, 5)))
+    return Posture(rng.uniform(1.0, 3.0, 5), rng.normal(size=5))
+
+
+@pytest.mark.parametrize("kind", ["whole", "diagonal"])
+def test_derivatives(kind: str) -> None:
+    for seed in range(5):
+        rng = np.random.default_rng(seed)
+        criterion = base(kind, rng)
+        held = Restrained(criterion, 0.5)
+        q, step = rng.normal(size=5), rng.normal(size=5)
+        slope = approx_fprime(step, lambda x, held=held, q=q: held.value(q, x), 1e-7)
+        np.testing.assert_allclose(held.gradient(q, step), slope, rtol=1e-5, atol=1e-5)
+        hessian = held.hessian() if kind == "whole" else np.diag(held.hessian())
+        bend = approx_fprime(step, lambda x, held=held, q=q: held.gradient(q, x), 1e-7)
+        np.testing.assert_allclose(hessian, bend, rtol=1e-5, atol=1e-5)
+        undone = times(held.inverse_hessian(), times(held.hessian(), step))
+        np.testing.assert_allclose(undone, step, rtol=0.0, atol=1e-9)
+        # What is held back is taken from nothing: without a step both agree, and the criterion is unchanged.
+        assert held.value(q, np.zeros(5)) == criterion.value(q, np.zeros(5))
+        np.testing.assert_array_equal(held.gradient(q, np.zeros(5)), criterion.gradient(q, np.zeros(5)))
+
+
+@pytest.mark.req("TRF-05")
+def test_no_criterion_takes_a_tick_off_its_path(koch11, monkeypatch) -> None:
+    """Directions in which a criterion hardly grows let Newton's steps go to and fro; the path is kept."""
+    restrained: list[bool] = []
+    plainly = TickSolver._restrained
+    monkeypatch.setattr(
+        TickSolver, "_restrained", lambda self, problem: (restrained.append(True), plainly(self, problem))[1]
+    )
+    for seed in range(30):
+        rng = np.random.default_rng(seed)
+        criterion = Flat(rng.normal(size=(6, 11)))
+        rotation, position = koch11.kinematics.tool_pose(koch11.q)
+        turn = Rotation.from_rotvec(0.02 * rng.uniform(-1, 1, 3))
+        position = position + 0.02 * rng.uniform(-1, 1, 3)
+        target = koch11.kinematics.target(rotation @ turn.as_matrix(), position)
+        bounds = koch11.bounds(np.inf)
+        solution = koch11.solve(target, criterion, bounds)
+        assert solution.solved, f"seed {seed}"
+        reached, there = koch11.kinematics.tool_pose(solution.q)
+        np.testing.assert_allclose(there, position, rtol=0.0, atol=1e-8)
+        np.testing.assert_allclose(reached, target.rotation, rtol=0.0, atol=1e-8)
+        step = solution.q - koch11.q
+        assert np.all((bounds.lower <= step) & (step <= bounds.upper))
+    # One of them at least is of the kind that this is for.
+    assert restrained
