@@ -28,13 +28,13 @@ ON_CART = LinkFrame("cart", "l1", (0.1, -0.2, 0.3), tuple(TURN.as_quat().tolist(
 """A frame on the slide that the rail carries: it moves along x with joint 1 alone."""
 
 
-@pytest.mark.req("MOT-17")
+@pytest.mark.req("MOT-07")
 def test_from_the_world_the_robot_is_itself(kit) -> None:
     robot = Kinematics(kit.gantry())
     assert seen_from(robot, None, PLACE) is robot.of_pose
 
 
-@pytest.mark.req("MOT-17")
+@pytest.mark.req("MOT-07")
 def test_from_a_link_poses_are_told_in_its_frame(kit) -> None:
     robot = Kinematics(kit.gantry())
     seen = seen_from(robot, ON_CART, PLACE)
@@ -47,7 +47,7 @@ def test_from_a_link_poses_are_told_in_its_frame(kit) -> None:
         np.testing.assert_allclose(rotation, wanted, rtol=0, atol=1e-12)
 
 
-@pytest.mark.req("MOT-17")
+@pytest.mark.req("MOT-07")
 def test_a_link_that_it_does_not_have(kit) -> None:
     robot = Kinematics(kit.gantry())
     with pytest.raises(PacingError) as caught:
@@ -61,7 +61,7 @@ def test_a_link_that_it_does_not_have(kit) -> None:
     )
 
 
-@pytest.mark.req("MOT-17")
+@pytest.mark.req("MOT-07")
 @pytest.mark.parametrize(("kind", "leads"), [(MoveKind.LIN, True), (MoveKind.PTP, False)])
 def test_a_frame_counts_for_what_leads_the_tool(kind: MoveKind, leads: bool) -> None:
     law = MotionLaw(speed=1.0, acc=1.0, speed_ori=1.0, acc_ori=1.0)

@@ -146,7 +146,7 @@ def test_bounds_bite_in_these_cases(name: str) -> None:
     assert sum(bool(np.any(rows[2:-2]) and not np.all(rows)) for rows in held) >= 2
 
 
-@pytest.mark.req("AVO-04")
+@pytest.mark.req("TRF-13")
 @pytest.mark.parametrize("share", [0.1, 0.5, 0.9])
 def test_what_comes_near_on_the_way_is_looked_at_where_it_does(share: float) -> None:
     """A ball beside the tool's way: far at first and at last, within its influence between."""

@@ -20,7 +20,7 @@ def chosen(*joints: int) -> np.ndarray:
     return found
 
 
-@pytest.mark.req("TRF-08")
+@pytest.mark.req("TRF-15")
 @pytest.mark.parametrize(
     ("joints", "leads"),
     [
@@ -35,7 +35,7 @@ def test_joints_lead_back_that_move_all_that_the_free_ones_move(arm7, joints, le
     assert fibre_of(arm7, arm7.q).leads_back(arm7.q, chosen(*joints)) is leads
 
 
-@pytest.mark.req("TRF-08")
+@pytest.mark.req("TRF-15")
 def test_joints_that_undo_each_other_lead_back_to_what_they_move(arm7) -> None:
     """With joint 2 at zero the first and the third turn about one axis: two joints for one coordinate."""
     q = arm7.q.copy()
@@ -46,7 +46,7 @@ def test_joints_that_undo_each_other_lead_back_to_what_they_move(arm7) -> None:
     assert not fibre.leads_back(q, chosen(1, 4))
 
 
-@pytest.mark.req("TRF-08")
+@pytest.mark.req("TRF-15")
 @pytest.mark.parametrize("coarse", [False, True])
 def test_slope_and_curvature_of_the_distance_by_differences_along_the_fibre(arm7, coarse: bool) -> None:
     """Postures on both sides are found by Newton steps back onto the pose."""
@@ -66,7 +66,7 @@ def test_slope_and_curvature_of_the_distance_by_differences_along_the_fibre(arm7
     assert fibre.decrease(sides[0], sides[1]) == pytest.approx(ahead - behind, rel=1e-9)
 
 
-@pytest.mark.req("TRF-08")
+@pytest.mark.req("TRF-15")
 def test_the_distance_counts_free_joints_by_their_weights(arm7) -> None:
     free = chosen(1, 2, 3, 5, 6, 7)
     away = np.array([0.1, -0.2, 0.3, 9.0, 0.0, 0.5, -0.1])
