@@ -95,3 +95,12 @@ def test_the_gate_carries_out_what_the_readme_says():
     gate = (ROOT / ".ci" / "run").read_text("utf-8").splitlines()[-1]
     assert gate.startswith("python -m pytest")
     assert gate in (ROOT / "README.md").read_text("utf-8") + (ROOT / "CONTRIBUTING.md").read_text("utf-8")
+
+
+@pytest.mark.parametrize("page", ["README.md", "SECURITY.md", "CONTRIBUTING.md", "docs/quality.md"])
+def test_tests_that_documents_name_are_there(page):
+    named = set(re.findall(r"`(tests/[\w/]+\.py)(?:::(\w+))?", (ROOT / page).read_text("utf-8")))
+    assert named
+    for file, test in sorted(named):
+        assert (ROOT / file).is_file(), file
+        assert not test or f"def {test}(" in (ROOT / file).read_text("utf-8"), f"{file}::{test}"
