@@ -15,7 +15,7 @@ import argparse
 import ast
 import sys
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
 
@@ -57,26 +57,35 @@ def _marks_of(path: Path) -> dict[str, list[str]]:
     text = path.read_text(encoding="utf-8")
     if "mark.req(" not in text:
         return {}
-    module = ast.parse(text)
-    tests = [node for node in ast.walk(module) if _is_test(node)]
+    outside, tests = _parts(ast.parse(text).body)
     found: dict[str, list[str]] = defaultdict(list)
     for test in tests:
-        for name in sorted({*_names(test)}):
+        for name in sorted({*_names(test.decorator_list)}):
             found[name].append(test.name)
-    inside = {id(node) for test in tests for node in ast.walk(test)}
     # What stands outside of tests holds for all of them: pytestmark, and lists of cases above their test.
-    for node in ast.walk(module):
-        if id(node) not in inside and (name := _name_of(node)):
-            found[name] += [test.name for test in tests if test.name not in found[name]]
+    for name in _names(outside):
+        found[name] += [test.name for test in tests if test.name not in found[name]]
     return found
 
 
-def _is_test(node: ast.AST) -> bool:
-    return isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and node.name.startswith("test")
+def _parts(body: Sequence[ast.stmt]) -> tuple[list[ast.AST], list[ast.FunctionDef]]:
+    """What of a module or class is no function, and its tests."""
+    outside: list[ast.AST] = []
+    tests: list[ast.FunctionDef] = []
+    for node in body:
+        if isinstance(node, ast.ClassDef):
+            within, more = _parts(node.body)
+            outside += [*node.decorator_list, *within]
+            tests += more
+        elif not isinstance(node, ast.FunctionDef):
+            outside.append(node)
+        elif node.name.startswith("test"):
+            tests.append(node)
+    return outside, tests
 
 
-def _names(test: ast.AST) -> Iterator[str]:
-    yield from (name for node in ast.walk(test) if (name := _name_of(node)))
+def _names(nodes: Sequence[ast.AST]) -> Iterator[str]:
+    yield from (name for whole in nodes for node in ast.walk(whole) if (name := _name_of(node)))
 
 
 def _name_of(node: ast.AST) -> str:

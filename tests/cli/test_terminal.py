@@ -9,7 +9,7 @@ import pytest
 import irlx
 from terminal import bare, seen
 
-CELL = '[robot]\nmodel = "arm7"\n[motion]\ntick_ms = 20\n'
+CELL = '[robot]\nmodel = "arm7"\n[motion]\ntick_ms = 10\n'
 # Joints this slow make the tool slow down, for which the motion is planned as a whole.
 MOVES = """PROGRAM p;
 VAR MAIN_JOINT_SPEED_MIN: down := (-9, -9, -9, -9, -9, -9, -9);

@@ -104,7 +104,13 @@ def _paced_or_otherwise(motion: PathMotion, model: Model, solver: TickSolver) ->
     found = _paced(motion, model, solver)
     if isinstance(found, Failure) and motion.term.otherwise is not None:
         second = _paced(replace(motion, term=motion.term.otherwise), model, solver)
-        return found if isinstance(second, Failure) else second
+        if not isinstance(second, Failure):
+            return second
+    if isinstance(found, Failure):
+        # The path must not pay for a criterion on whose minimum the steps of a tick do not settle.
+        walked, broken = _walked(motion, model, solver.restraining(), thorough=True)
+        if walked.halt is None and broken is None:
+            return _as_walked(motion, walked)
     return found
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from enum import Enum
 from math import sqrt
 from typing import NamedTuple
@@ -75,6 +76,16 @@ class TickSolver:
         self._qp = qp
         self._plain_for = np.ones(kinematics.joints, dtype=bool)
         self._plain = UndisturbedTick(kinematics, self._plain_for, max_iterations)
+        self._restrains = False
+
+    def restraining(self) -> TickSolver:
+        """The same, which holds a criterion back where a thorough search finds no step that settles.
+
+        Its last resort takes many times as long, and asks less of the criterion than the move does.
+        """
+        found = copy(self)
+        found._restrains = True
+        return found
 
     def solve(self, problem: TickProblem, seed: Array | None = None, thorough: bool = True) -> TickSolution:
         """Find the posture on the demanded pose that makes the criterion smallest within the bounds.
@@ -110,9 +121,9 @@ class TickSolver:
             second = self._newton(problem, nearest.q - problem.q)
             if isinstance(second, TickSolution):
                 return second
-            restrained = self._restrained(problem)
-            if restrained is not None:
-                return restrained
+            third = self._restrained(problem) if self._restrains else None
+            if third is not None:
+                return third
         if problem.clearance is not None:
             unaware = self.solve(problem._replace(clearance=None))
             if unaware.solved:
