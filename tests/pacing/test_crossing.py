@@ -171,3 +171,27 @@ def test_kinds_of_moves(kit) -> None:
     assert not are_of_one_kind(blocks[0], blocks[1])
     assert not are_of_one_kind(blocks[1], blocks[2])
     assert are_of_one_kind(blocks[1], blocks[1])
+
+
+@pytest.mark.parametrize("blends", PASSING)
+def test_rows_are_marked_that_no_move_has_on_its_own(kit, tours, blends) -> None:
+    """Those of a corner; the row nearest to it is the last one of the move that ends there."""
+    found, stopping = tours(kit, *blends), tours(kit, None, None)
+    known = {row.tobytes() for row in stopping.q}
+    first = 1
+    for number, one in enumerate(found.done):
+        rows = one.rows
+        own = [row.tobytes() in known for row in rows.q]
+        assert [rows.passes_corner(row) for row in range(len(rows))] == [not mine for mine in own]
+        first += len(rows)
+        if number < 2 and blends[number] is not None:
+            away = np.linalg.norm(found.tool - found.corners[number], axis=1)
+            assert int(np.argmin(away)) == first - 1
+
+
+def test_what_is_told_of_a_corner_is_told_at_the_move_that_passes_it(kit, tours) -> None:
+    found = tours(kit, Blend(5.0), None)
+    told = [note for note in found.notes if note.code in {"IRL433", "IRL436"}]
+    assert sorted(note.code for note in told) == ["IRL433", "IRL436"]
+    assert [note.place.line for note in told] == [1, 1]
+    assert [note.related[0].place.line for note in told] == [2, 2]

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from irlx.blocks import WaitBlock
 from irlx.pacing.explanation import TickExplanation, explain_tick
+from irlx.pacing.freed import Freed
 from irlx.robot.kinematics import Kinematics
 
 DT = 0.01
@@ -138,3 +141,25 @@ def test_a_joint_that_cannot_follow_runs_at_its_bound(kit) -> None:
     assert found.joints[3].step == pytest.approx(0.2 * DT, rel=1e-2)
     assert found.path.rate == pytest.approx(0.2, rel=1e-2)
     assert found.path.programmed_rate == pytest.approx(0.5)
+
+
+def test_the_last_row_of_a_line_holds_and_asks_for_nothing(kit, line) -> None:
+    shop, rows = line
+    assert rows.path is not None
+    assert len(rows) == len(rows.path.demands) + 1
+    found = explained(shop, kit, rows, len(rows) - 1)
+    assert found.way_of_pacing == "hold tick of a stop"
+    assert (found.path, found.problem) == (None, None)
+    assert not any(joint.step for joint in found.joints)
+    assert explained(shop, kit, rows, len(rows) - 2).path.way == pytest.approx(0.5, abs=1e-4)
+
+
+def test_virtual_joints_that_are_none_change_nothing(kit, line) -> None:
+    """A robot with no joints but its own among the virtual ones is explained as it is without them."""
+    shop, rows = line
+    kinematics = Kinematics(kit.gantry())
+    q = np.vstack([kit.start, rows.q])
+    freed = Freed(kinematics, kinematics, np.arange(7), shop.limits, WEIGHTS, q)
+    wide = replace(rows, freed=freed)
+    for row in (0, len(rows) // 2):
+        assert explained(shop, kit, wide, row) == explained(shop, kit, rows, row)

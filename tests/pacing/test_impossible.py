@@ -7,7 +7,17 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from irlx.blocks import LimitKind
-from irlx.diagnostics import IrlxError
+from irlx.diagnostics import IrlxError, Place
+from irlx.motion.line import Line
+from irlx.pacing import impossible
+from irlx.pacing.impossible import Surroundings, _explain_standing, explain_broken_row, goal_shortfall
+from irlx.pacing.row_check import BrokenBound
+from irlx.pacing.slowdown.clock import PlannedClock
+from irlx.pacing.slowdown.clock_bounds import Governor
+from irlx.pacing.slowdown.curve import JointCurve
+from irlx.pacing.slowdown.ladder import TimedCurve
+from irlx.robot.kinematics import Kinematics, Sizes
+from irlx.transform.nearest import Nearest
 
 pytestmark = pytest.mark.req("MOT-22")
 
@@ -100,3 +110,60 @@ def test_turn_is_told_in_degrees(kit, shop) -> None:
     assert "b is at its upper position limit 28.6479 deg" in reason.message
     assert reason.data["length"] == "57.2958 deg"
     assert 0.7 * 57.2958 <= float(reason.data["way"]) <= 0.72 * 57.2958 + 0.5
+
+
+def around(kit, limits) -> Surroundings:
+    return Surroundings(Kinematics(kit.gantry()), limits, np.ones(7, dtype=bool))
+
+
+@pytest.mark.parametrize(
+    ("joint", "governor", "bound"),
+    [
+        (2, Governor.SPEED, "y and its speed limit 400 mm/s"),
+        (4, Governor.SPEED, f"a and its speed limit {np.degrees(0.5):.6g} deg/s"),
+        (2, Governor.ACCELERATION, "y and its acceleration limit 3000 mm/s2"),
+        (-1, Governor.SPEED, "the limits together"),
+        (2, Governor.PROGRAM, "the limits together"),
+    ],
+)
+def test_a_clock_that_stands_names_the_narrower_side_of_the_joint(kit, joint, governor, bound) -> None:
+    """The way is that of the knot; a joint is named only where its own limit makes the clock stand."""
+    slow = np.full(7, 0.5)
+    limits = kit.limits(5.0, np.inf, 3.0).with_pair("speed", -np.where(np.arange(7) == 2, 0.4, 0.6), slow)
+    s = np.array([0.0, 0.2, 0.6])
+    q = np.array([kit.moved(0.0, 0.0, way, 0.0, 0.0, 0.0, 0.0) for way in s])
+    clock = PlannedClock(s, np.zeros(3), np.full(3, governor, dtype=np.int8), np.full(3, joint))
+    timed = TimedCurve(JointCurve(s, q), clock)
+    rotation = kit.rotation(kit.start).as_matrix()
+    path = Line(kit.beyond(0.0, 0.0, 0.0), rotation, kit.beyond(0.0, 0.6, 0.0), rotation)
+    told = _explain_standing(timed, 1, around(kit, limits), path, Place("t.irl"))
+    assert told.code == "IRL524"
+    assert told.data["bound"] == bound
+    assert (told.data["way"], told.data["length"]) == ("200", "600 mm")
+
+
+def test_a_broken_row_is_told_by_its_tick(kit) -> None:
+    """The third row of a motion whose first tick is 8; turns in degrees, slides in mm."""
+    found = [
+        explain_broken_row(BrokenBound(2, joint, kind, 0.75, 0.5), 8, kit.gantry(), Place("t.irl")).data
+        for joint, kind in ((1, LimitKind.SPEED), (4, LimitKind.ACCELERATION), (3, LimitKind.POSITION))
+    ]
+    assert [data["tick"] for data in found] == [10, 10, 10]
+    assert [(data["joint"], data["kind"]) for data in found] == [
+        ("x", "speed"),
+        ("a", "acceleration"),
+        ("z", "position"),
+    ]
+    assert [data["value"] for data in found] == ["750 mm/s", f"{np.degrees(0.75):.6g} deg/s2", "750 mm"]
+    assert [data["bound"] for data in found] == ["500 mm/s", f"{np.degrees(0.5):.6g} deg/s2", "500 mm"]
+
+
+@pytest.mark.parametrize("first", [(0.0, 0.3), (0.2, 0.0)])
+def test_a_goal_is_met_only_in_place_and_in_turn(kit, monkeypatch, first) -> None:
+    """A start that ends in the right place but turned, or turned well but elsewhere, is not the last word."""
+    sizes = [Sizes(*first, 0.0), Sizes(0.0, 0.0, 0.0), Sizes(9.0, 9.0, 0.0)]
+    approaches = iter([Nearest(kit.start, np.zeros(6), size) for size in sizes])
+    monkeypatch.setattr(impossible, "nearest_approach", lambda *_: approaches)
+    found = goal_shortfall(around(kit, kit.limits()), np.eye(3), np.zeros(3), kit.start, whole=True)
+    assert (found.distance, found.angle) == (0.0, 0.0)
+    assert len(list(approaches)) == 1

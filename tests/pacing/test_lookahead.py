@@ -169,3 +169,9 @@ def test_an_avoiding_posture_stops() -> None:
     assert ahead.take(move(1)) == []
     asked = AskAvoidingPosture(origin(2), (0.0, 0.0, 0.0), None, "wall")
     assert [len(group) for group in ahead.before(asked)] == [1]
+
+
+def test_two_hundred_moves_are_joined_and_the_next_ones_again() -> None:
+    """The number that docs/reference/motion.md tells."""
+    groups, _ = gathered(*(move(number) for number in range(401)))
+    assert [len(group) for group in groups] == [200, 200, 1]

@@ -6,7 +6,11 @@ import numpy as np
 import pytest
 
 from drawn_scenes import cell_of
-from irlx.pacing.impossible import Surroundings, _too_near
+from irlx.diagnostics import Place
+from irlx.motion.plan_path import PlannedPath
+from irlx.motion.trapezoid import Trapezoid
+from irlx.pacing.impossible import Surroundings, _too_near, explain_failure
+from irlx.pacing.path_motion import Failure
 from irlx.pacing.slowdown.planned import Refusal
 from irlx.pacing.too_near import told
 from irlx.scene.distances import Distances
@@ -16,6 +20,7 @@ from irlx.solids.placement import Placement
 from irlx.solids.shape import Solid, Sphere
 from irlx.transform.clearance import Clearance, TooNear
 from irlx.transform.tick import TickSolution, TickStatus
+from machines import machine
 
 pytestmark = pytest.mark.req("MOT-22")
 
@@ -61,6 +66,7 @@ def test_what_is_kept_is_more_than_what_would_be_left(room, kept) -> None:
     ("distance", "floor", "words"),
     [
         (0.015, 0.02, ("15 mm", "20 mm")),
+        (0.0123456, 0.0234567, ("12.35 mm", "23.46 mm")),
         (0.0199999, 0.02, ("19.9999 mm", "20 mm")),
         (-0.001, 0.0, ("-1 mm (they overlap)", "0 mm")),
         (0.02 - 1.1e-6, 0.02, ("19.999 mm", "20 mm")),
@@ -89,3 +95,26 @@ def test_obstacles_that_move_are_told_where_they_are_then(elapsed) -> None:
     every = distances.of(cell.start, np.arange(len(pairs))).distance
     assert found is not None
     assert found.distance == pytest.approx(every.min(), abs=1e-12)
+
+
+@pytest.mark.parametrize(("room", "blamed"), [(5e-4, True), (1.5e-3, False)])
+def test_a_posture_that_is_only_out_of_reach_blames_no_obstacle_far_off(room, blamed) -> None:
+    """What is more than a millimetre beyond its margin did not keep the joints from going on."""
+    around, q = around_a_ball(room)
+    solution = TickSolution(TickStatus.NO_STEP, q, np.zeros(7, dtype=np.int8), np.zeros(6), 3)
+    found = _too_near(Refusal(0.1, solution=solution), around)
+    assert (found is not None) is blamed
+
+
+def test_a_motion_that_is_refused_for_an_obstacle_names_it_and_where() -> None:
+    """At 105 mm of 400 mm at a steady speed: more than 10 of 40 ticks after the 7th, and less than 11."""
+    around, q = around_a_ball(-2e-3)
+    path = machine("arm7").line((0.4, 0.0, 0.0), (0.0, 0.0, 0.0))
+    law = Trapezoid.fastest(path.length, 1.0, 1e6)
+    plan = PlannedPath(path, law, 40, law)
+    solution = TickSolution(TickStatus.TOO_NEAR, q, np.zeros(7, dtype=np.int8), np.zeros(6), 3)
+    failure = Failure(None, None, Refusal(0.105, solution=solution))
+    told_of = explain_failure(failure, around, plan, 7, None, Place("t.irl"))
+    assert told_of.code == "IRL560"
+    assert "'ball'" in told_of.data["pair"]
+    assert (told_of.data["way"], told_of.data["length"], told_of.data["tick"]) == ("105", "400 mm", 17)

@@ -11,7 +11,7 @@ from irlx.motion.trapezoid import Trapezoid
 from irlx.motion.whole_ticks import whole_ticks
 from irlx.pacing.clock import programmed_clock
 from irlx.pacing.demand import Demands, demands
-from irlx.pacing.walk import Walk, walk
+from irlx.pacing.walk import _AHEAD, _LEAST_AHEAD, _LONGEST_WAIT, Walk, _Haste, walk
 from irlx.robot.limits import JointLimits
 from irlx.scene.distances import Distances
 from irlx.scene.obstacle import Obstacle
@@ -189,3 +189,36 @@ def test_a_demand_out_of_reach_ends_a_walk_at_its_tick() -> None:
     assert found.halt.demand.tick == 61
     assert len(found.q) == len(found.demands) == 60
     assert np.all(found.q == case.walk().q[:60])
+
+
+def test_a_walk_runs_farther_ahead_as_long_as_all_ticks_are_done() -> None:
+    haste, tried = _Haste(True), []
+    for _ in range(8):
+        tried.append(haste.ahead)
+        haste.went(haste.ahead)
+    assert tried == [min(_LEAST_AHEAD * 2**k, _AHEAD) for k in range(8)]
+    haste.went(_AHEAD - 1)
+    assert haste.ahead == _LEAST_AHEAD
+
+
+def test_a_walk_waits_twice_as_long_after_each_try_in_vain() -> None:
+    haste, waits = _Haste(True), []
+    for _ in range(9):
+        assert haste.ahead == _LEAST_AHEAD
+        haste.went(0)
+        waits.append(0)
+        while haste.ahead == 0:
+            haste.went(0)
+            waits[-1] += 1
+    assert waits == [min(2**k, _LONGEST_WAIT) for k in range(9)]
+    haste.went(_LEAST_AHEAD)
+    haste.went(0)
+    haste.went(0)
+    assert haste.ahead == _LEAST_AHEAD
+
+
+def test_a_walk_that_is_not_able_to_never_runs_ahead() -> None:
+    haste = _Haste(False)
+    for _ in range(5):
+        assert haste.ahead == 0
+        haste.went(0)

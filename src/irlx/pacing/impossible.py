@@ -282,9 +282,7 @@ def slower_than_allowed(duration: float, programmed: float, longest: float, plac
     return report("IRL525", place, **data)
 
 
-def goal_shortfall(
-    around: Surroundings, rotation: Array, position: Array, q: Array, whole: bool = True
-) -> Nearest:
+def goal_shortfall(around: Surroundings, rotation: Array, position: Array, q: Array, whole: bool) -> Nearest:
     """How near the tool can come to a goal pose within the limits, from any of several starts.
 
     `whole`: what follows from the task's coordinates counts as well.

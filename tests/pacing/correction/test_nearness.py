@@ -86,6 +86,19 @@ def test_the_pair_with_the_least_room_is_given_and_counted_where_it_is_inside() 
     assert [warning.code for warning in inside.warnings] == ["IRL587"] * len(inside.report.nearest)
 
 
+def test_a_pair_on_its_margin_is_not_inside() -> None:
+    """A margin of just what there is, and of what is beyond rounding more."""
+    found = []
+    pacer, _ = pacer_beside(BESIDE)
+    there = least_distance(pacer, pacer.q)
+    for more in (0.0, 1e-4):
+        nearness = Nearness()
+        pacer, _ = pacer_beside(BESIDE, there + more)
+        assert nearness.ended(pacer.clearance, pacer.q, 4, PLACE) is not None
+        found.append(nearness.report.near_ticks)
+    assert found == [0, 1]
+
+
 def test_a_correction_goes_as_far_as_an_obstacle_lets_it() -> None:
     """The tool is sent into a ball: it ends short of that, and nothing comes inside the margin."""
     pacer, centre = pacer_beside((0.12, 0.0, 0.0))

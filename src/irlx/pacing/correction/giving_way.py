@@ -50,5 +50,5 @@ def retreat_of(problem: TickProblem, kinematics: Kinematics, weights: Array, bas
     usable = gains > least
     inverse = np.divide(1.0, gains, out=np.zeros(gains.size), where=usable)
     step[free] = along @ (vectors @ (inverse * (vectors.T @ rows.lower[short])))
-    step *= min(1.0, LONGEST / max(float(np.max(np.abs(step))), LONGEST))
+    step *= LONGEST / max(float(np.max(np.abs(step))), LONGEST)
     return Retreat(pairs[short], step)
