@@ -7,6 +7,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from irlx.blocks import LimitKind, MoveKind
+from irlx.pacing.pacer import Pacer
+from irlx.pacing.situation import PacingSetup
+from irlx.robot.equality import Constraint
+from irlx.robot.kinematics import Kinematics
 
 TICKS = [0.00025, 0.001, 0.01, 0.05]
 UP = np.array([0.0, 0.0, 1.0])
@@ -204,3 +208,30 @@ def test_same_blocks_give_the_same_bytes(kit) -> None:
         shop.ptp_pose(kit.position(kit.start), kit.rotation(kit.start))
         found.append(shop.all_rows().tobytes())
     assert found[0] == found[1]
+
+
+class Stays(Constraint):
+    """One joint is where it is at the start."""
+
+    def __init__(self, joint: int, value: float) -> None:
+        self.name, self._joint, self._value = f"joint {joint} stays", joint, value
+
+    def residual(self, q: np.ndarray) -> np.ndarray:
+        return q[self._joint : self._joint + 1] - self._value
+
+    def derivative(self, q: np.ndarray) -> np.ndarray:
+        return np.eye(q.size)[self._joint : self._joint + 1]
+
+
+@pytest.mark.parametrize("joint", [0, 3, 6])
+def test_a_frozen_joint_breaks_no_condition_of_its_own(kit, joint: int) -> None:
+    """Frozen, it keeps the condition by itself: that goes, and comes back with the joint."""
+    stays = Stays(joint, kit.start[joint])
+    kinematics = Kinematics(kit.gantry()).constrained([stays])
+    shop = kit.shop()
+    setup = PacingSetup(kinematics, shop.limits, np.ones(7), kit.start, shop.dt, may_free=True)
+    shop.pacer = Pacer(setup, shop.pacer.locate)
+    other = (joint + 1) % 7
+    for frozen, left in (((joint + 1,), ()), ((other + 1,), (stays,)), ((), (stays,))):
+        shop.freeze(*frozen)
+        assert shop.pacer.setup.kinematics.constraints == left

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from irlx.blocks import LimitKind
 from irlx.motion.plan_path import PlannedPath
 from irlx.motion.trapezoid import Trapezoid
 from irlx.motion.whole_ticks import whole_ticks
+from irlx.pacing import path_motion
 from irlx.pacing.clock import programmed_clock
-from irlx.pacing.path_motion import Failure, PacedPath, PathMotion, pace_path
+from irlx.pacing.demand import Demand
+from irlx.pacing.path_motion import Failure, PacedPath, PathMotion, _walked, pace_path
 from irlx.pacing.posture_term import PostureTerm
 from irlx.pacing.slowdown.clock_bounds import Governor
+from irlx.pacing.slowdown.planned import Refusal
 from irlx.pacing.walk import walk
 from irlx.transform.criteria.least_motion import LeastMotion
 from irlx.transform.qp.proxqp import ProxQpSolver
@@ -119,3 +125,49 @@ def test_a_motion_without_a_way_is_a_failure_with_both_reasons() -> None:
     assert found.halt is not None
     assert found.refusal.solution is not None
     assert found.halt.demand.s == pytest.approx(found.refusal.s, abs=5e-3)
+
+
+@pytest.mark.parametrize("pushed", [False, True])
+def test_the_stop_of_a_walk_is_judged_too(pushed: bool) -> None:
+    """Demands that run away faster and faster can be met tick by tick, but nobody stops in the last one."""
+    dt = 0.01
+
+    def push(demand: Demand) -> Demand:
+        time = dt * demand.tick
+        return demand._replace(position=demand.position + np.array([0.0, 0.0, -0.25 * time**2]))
+
+    robot, motion = machine("arm7"), motion_of("arm7", dt)
+    if pushed:
+        motion = replace(motion, modifiers=(push,))
+    most = np.full(robot.n, 40.0)
+    model = robot.model(robot.unlimited().with_pair("acceleration", -most, most))
+    walked, broken = _walked(motion, model, TickSolver(robot.kinematics, ProxQpSolver()), thorough=False)
+    assert walked.halt is None
+    assert (broken is not None) is pushed
+    if broken is not None:
+        assert (broken.kind, broken.row) == (LimitKind.ACCELERATION, len(walked.q))
+
+
+@pytest.mark.parametrize("first", [False, True])
+@pytest.mark.parametrize("second", [None, False, True])
+def test_another_posture_term_serves_where_the_first_one_fails(monkeypatch, first, second) -> None:
+    """A way is a way; of two failures the first one is told, which is of what was asked for."""
+    motion = motion_of("arm7", 0.01)
+    other = replace(motion.term) if second is not None else None
+    motion = replace(motion, term=replace(motion.term, otherwise=other))
+    found = {
+        way: PacedPath(np.empty((0, 7)), np.empty((0, 7), np.int8), (), 0, motion.term)
+        if works
+        else Failure(None, None, Refusal(0.1))
+        for way, works in (("first", first), ("second", bool(second)))
+    }
+    asked = []
+
+    def paced_by(given: PathMotion, *_):
+        asked.append("first" if given.term is motion.term else "second")
+        return found[asked[-1]]
+
+    monkeypatch.setattr(path_motion, "_paced", paced_by)
+    chosen = pace_path(motion, None, None)
+    assert chosen is found["second" if second and not first else "first"]
+    assert asked == (["first"] if first or second is None else ["first", "second"])

@@ -8,10 +8,12 @@ from irlx.blocks import (
     AskJointBounds,
     AskLastMove,
     AskPose,
+    Blend,
     LimitKind,
     MoveBlock,
     MoveKind,
     PoseIncrement,
+    PoseTarget,
     ToolBlock,
     WeightsBlock,
 )
@@ -115,3 +117,24 @@ def test_answers_of_plain_data(kit):
     assert answer_of_last_move(1.5, 0.25) == (1.5, 0.25, 0.0)
     assert answer_of_bounds(kit.limits(position=2.0)) == (-2.0,) * 7 + (2.0,) * 7
     assert way_of(None, np.zeros(3), 0.01) == (0.0, 0.0)
+
+
+@pytest.mark.req("LANG-52")
+def test_the_last_move_of_a_group(kit):
+    """Of moves that are carried out together it is the last one, with its own time and way."""
+    shop = kit.shop()
+    asked_for = ((kit.beyond(0.0, 0.12, 0.0), Blend(0.0)), (kit.beyond(0.0, 0.12, 0.3), None))
+    blocks = [
+        MoveBlock(
+            **shop._data(),
+            kind=MoveKind.LIN,
+            target=PoseTarget(tuple(goal), None),
+            law=shop.law(),
+            blend=blend,
+        )
+        for goal, blend in asked_for
+    ]
+    done = list(shop.pacer.carry_out(blocks))
+    duration, way, _ = asked(shop, AskLastMove)
+    assert duration == pytest.approx((len(done[1].rows) - 1) * shop.dt)
+    assert way == pytest.approx(0.3, abs=1e-9)

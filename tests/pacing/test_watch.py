@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from irlx.blocks import Block
 from irlx.job import prepare
+from irlx.pacing.pacer import Pacer
+from irlx.pacing.situation import PacingSetup
 from irlx.pipeline import Execution
+from irlx.robot.kinematics import Kinematics
 from irlx.running import execute
 
 CELL = '[robot]\nmodel = "arm7"\n'
@@ -64,3 +68,22 @@ def test_it_is_told_of_motions_ticks_and_plans(tmp_path) -> None:
     assert ("plans", 0) in kept.told[second:third]
     assert ("plans", 0) in kept.told[third:last]
     assert execute(Execution(job)).q.tobytes() == run.q.tobytes()
+
+
+@pytest.mark.req("REP-01")
+def test_each_motion_is_told_when_it_begins(kit) -> None:
+    """A move of the joints, one along a path, one of no length: with the tick whose row stands then."""
+    shop, kept = kit.shop(), Kept()
+    setup = PacingSetup(Kinematics(kit.gantry()), shop.limits, np.ones(7), kit.start, shop.dt, watch=kept)
+    shop.pacer = Pacer(setup, shop.pacer.locate)
+    lengths = [
+        0 if rows is None else len(rows)
+        for rows in (
+            shop.to(kit.moved(0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.0), duration=0.3),
+            shop.line(kit.beyond(0.0, 0.1, 0.1)),
+            shop.line(kit.beyond(0.0, 0.1, 0.1)),
+        )
+    ]
+    begun = [words for words in kept.told if words[0].startswith("line")]
+    assert begun == [("line 1", 0), ("line 2", lengths[0]), ("line 3", lengths[0] + lengths[1])]
+    assert lengths[2] == 0
