@@ -14,6 +14,7 @@ from irlx.robot.kinematics import Kinematics
 
 DT = 0.01
 PLACE = Place("t.irl")
+pytestmark = pytest.mark.req("LANG-41")
 
 
 def wait(duration: float) -> WaitBlock:
