@@ -5,9 +5,12 @@ import pytest
 
 import irlx
 from irlx.cell.load import load_cell
+from irlx.pacing.avoiding_posture import _room
 from irlx.robot.kinematics import Kinematics
+from irlx.robot.limits import JointLimits
 from irlx.scene.distances import Distances
 from irlx.scene.watched_pair import watched_pairs
+from irlx.transform.step_bounds import BoundSource
 
 PROGRAM = """PROGRAM away;
 VAR POSE: p; MAIN_JOINT: best;
@@ -97,3 +100,14 @@ def test_where_no_posture_is_clear_a_warning_says_so(tmp_path):
     result, told = run(tmp_path, PROGRAM.format(name="block"), y=200, z=760)
     assert [found.code for found in result.diagnostics if found.code == "IRL565"] == ["IRL565"]
     assert told < 10.0
+
+
+@pytest.mark.req("TRF-16")
+def test_a_tick_goes_no_further_than_the_criterion_is_itself_and_keeps_the_limits():
+    """5E-2 each way, less where a limit is nearer; each bound is one of position."""
+    inf = np.full(3, np.inf)
+    limits = JointLimits(np.full(3, -1.0), np.full(3, 1.0), -inf, inf, -inf, inf)
+    room = _room(np.array([0.0, 0.98, -0.97]), limits)
+    np.testing.assert_allclose(room.lower, [-0.05, -0.05, -0.03])
+    np.testing.assert_allclose(room.upper, [0.05, 0.02, 0.05])
+    assert room.lower_source.tolist() == room.upper_source.tolist() == [BoundSource.POSITION] * 3

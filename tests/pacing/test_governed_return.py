@@ -8,9 +8,10 @@ import pytest
 
 from irlx.motion.trapezoid import Trapezoid
 from irlx.pacing.governed_return import governed_reference, share_of_way
-from irlx.pacing.return_way import SAFE_BEND, ReturnWay, return_way, through
+from irlx.pacing.return_way import SAFE_BEND, ReturnWay, _references, return_way, through
 from irlx.robot.limits import JointLimits
 from irlx.transform.fibre import Fibre
+from irlx.transform.posture_flow import posture_flow
 from irlx.transform.qp.proxqp import ProxQpSolver
 from machines import machine
 from slow_cases import jacobian_at
@@ -228,3 +229,41 @@ def test_asymmetric_limits_count_by_their_narrower_side() -> None:
     wanted = governed_reference(straight(goal, way), LAWS[0], both)
     found = governed_reference(straight(goal, way), LAWS[0], one_sided)
     np.testing.assert_allclose(found(0.4), wanted(0.4), atol=1e-14)
+
+
+@laws
+def test_before_its_start_and_behind_its_end_a_move_is_drawn_to_what_its_ends_are(law: Trapezoid) -> None:
+    """Rounding may lead a hair beyond either; a share of the way stays that share."""
+    goal, way = drawn(6)
+    reference = governed_reference(bent(goal, way), law, limited(0.05, 0.05))
+    assert np.linalg.norm(reference(law.length) - goal) > 0.1
+    for beyond in (1e-9, 0.3, 5.0):
+        assert np.array_equal(reference(law.length + beyond), reference(law.length))
+        assert np.array_equal(reference(-beyond), reference(0.0))
+
+
+@pytest.mark.parametrize(("seed", "times", "whole"), [(1, 4.0, True), (3, 8.0, True), (3, 4.0, False)])
+def test_the_pull_against_the_pose_is_what_the_bend_allows(seed: int, times: float, whole: bool) -> None:
+    """At every point of a flow: all of the goal's at the end of a whole way, and as much as leaves a bend of
+    `SAFE_BEND` up to half a radian before it; between, the bend that is left rises with the way."""
+    robot, goal = case("arm7", seed)
+    model, goal = robot.model(robot.unlimited()), robot.start + times * (goal - robot.start)
+    flow = posture_flow(
+        model.kinematics, robot.start, goal, model.weights, model.limits, model.movable, ProxQpSolver()
+    )
+    ways = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(flow.points, axis=0), axis=1)))
+    bends, shares = [], []
+    for point, reference in zip(flow.points, _references(flow, goal, whole), strict=True):
+        tangent = flow.fibre.tangent(point)
+        curved = flow.fibre.curvature(point, tangent) - np.eye(tangent.basis.shape[1])
+        bends.append(np.max(np.abs(np.linalg.eigvalsh(curved))))
+        along_pose, weights = along(robot, point), robot.weights
+        # W-orthogonal to the fibre: what of the goal's pull is against the pose.
+        inner = along_pose @ np.linalg.solve((along_pose.T * weights) @ along_pose, along_pose.T * weights)
+        against = (goal - point) - inner @ (goal - point)
+        shares.append((weights * against) @ (reference - point) / ((weights * against) @ against))
+        np.testing.assert_allclose(reference - point, shares[-1] * against, atol=1e-7)
+    left = ways[-1] - ways
+    steep = max(bends[-1], SAFE_BEND) if whole else SAFE_BEND
+    most = SAFE_BEND + (steep - SAFE_BEND) * np.clip(1.0 - left / 0.5, 0.0, 1.0)
+    np.testing.assert_allclose(shares, np.minimum(1.0, most / np.array(bends)), rtol=1e-6)

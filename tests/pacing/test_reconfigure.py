@@ -1,12 +1,20 @@
 """RECONFIGURATION and WITH RECONFIGURATION on a gantry with a rail: nearest postures are closed form."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from irlx.blocks import JointTarget, LimitKind, MoveBlock, MoveKind, PoseTarget, ReconfigureBlock
-from irlx.diagnostics import CATALOGUE
+from irlx.diagnostics import CATALOGUE, Place
+from irlx.pacing import reconfigure as reconfigure_module
 from irlx.pacing.errors import PacingError
-from irlx.pacing.row_check import broken_bound
+from irlx.pacing.reconfigure import _planned
+from irlx.pacing.row_check import BrokenBound, broken_bound
+from irlx.pacing.slowdown.model import Model
+from irlx.pacing.slowdown.planned import PlannedMotion, Refusal
+from irlx.robot.kinematics import Kinematics
+from irlx.transform.clearance import TooNear
 
 
 def reconfigure(shop, values, **law):
@@ -58,6 +66,8 @@ def test_a_posture_of_the_same_pose_is_reached_exactly(kit, dt):
     assert shop.pacer.warnings == []
     assert np.array_equal(shop.pacer.q, konf)
     assert shop.pacer.tick == len(rows)
+    # The way is as long as the path of the joints: rail and x go 1 each.
+    assert rows.length == rows.s[-1] == pytest.approx(2.0**0.5)
 
 
 @pytest.mark.req("LANG-65")
@@ -192,3 +202,59 @@ def test_ptp_to_joint_values_takes_these(kit, shop):
 
 def test_codes_are_warnings():
     assert not any(CATALOGUE[code].severity.name == "ERROR" for code in ("IRL349", "IRL350"))
+
+
+# ---- the plan, its stages answered by hand
+
+
+class Flow:
+    """A way whose points tell how far inside they keep."""
+
+    points = "as it is"
+
+    def further_inside(self, widening):
+        return widening
+
+
+BROKEN = Refusal(0.3, broken=BrokenBound(7, 0, LimitKind.POSITION, 1.1, 1.0))
+
+
+def planned_on(answers, monkeypatch, kit, clearance=None):
+    """What `_planned` makes of these answers, with the points that it asked for."""
+    asked = []
+
+    def on_curve(model, points, ticking):
+        asked.append(points)
+        return answers[len(asked) - 1]
+
+    monkeypatch.setattr(reconfigure_module, "_on_curve", on_curve)
+    kinematics = Kinematics(kit.gantry())
+    model = Model(kinematics, kit.limits(), np.ones(7), np.ones(7, dtype=bool), clearance)
+    return lambda: _planned(model, Flow(), None, 10, Place("t.irl")), asked
+
+
+def test_a_curve_that_swings_beyond_a_limit_is_laid_further_inside_until_it_does_not(kit, monkeypatch):
+    for refused in range(4):
+        made = PlannedMotion(None, None, None, 1.0)
+        run, asked = planned_on([BROKEN] * refused + [made], monkeypatch, kit)
+        assert run() is made
+        assert asked == ["as it is", 4.0, 16.0, 64.0][: refused + 1]
+    run, asked = planned_on([BROKEN] * 4, monkeypatch, kit)
+    with pytest.raises(PacingError) as caught:
+        run()
+    assert caught.value.diagnostics[0].code == "IRL523"
+    assert caught.value.diagnostics[0].data["tick"] == 17
+    assert len(asked) == 4
+
+
+def test_what_comes_too_near_is_told_with_its_tick_and_no_other_curve_is_tried(kit, monkeypatch):
+    pair = SimpleNamespace(link="l3", other="wall", obstacle=None)
+    clearance = SimpleNamespace(distances=SimpleNamespace(pairs=[None, pair]))
+    near = Refusal(0.3, near=TooNear(1, 0.0199, 0.02), row=5)
+    run, asked = planned_on([near], monkeypatch, kit, clearance)
+    with pytest.raises(PacingError) as caught:
+        run()
+    told = caught.value.diagnostics[0]
+    assert (told.code, told.data["tick"]) == ("IRL561", 15)
+    assert "'wall'" in told.data["pair"]
+    assert asked == ["as it is"]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from irlx.blocks import LimitKind
-from irlx.pacing.row_check import broken_bound
+from irlx.pacing.row_check import Excess, broken_bound, excess_of
 
 pytestmark = pytest.mark.req("MOT-20")
 
@@ -91,3 +91,29 @@ def test_the_first_broken_row_is_named(kit) -> None:
     assert broken_bound(START, rows, kit.limits(5.0), DT).row == 15
     first = broken_bound(START, rows, kit.limits(5.0, 1.0), DT)
     assert (first.row, first.joint, first.kind) == (12, 3, LimitKind.SPEED)
+
+
+# ---- how far
+
+
+def test_what_keeps_its_bounds_exceeds_nothing(kit) -> None:
+    assert excess_of(START, ramp(), kit.limits(1.0, 0.1, 10.0), DT) == Excess(0.0, 1.0, 1.0, None)
+
+
+def test_excess_is_told_by_kind(kit) -> None:
+    """0.1 per second for 29 ticks, reached and left within one: a fifth of the speed, two accelerations."""
+    limits = kit.limits(0.02, 0.5, 5.0)
+    found = excess_of(START, ramp(), limits, DT)
+    assert found.position == pytest.approx(29 * 0.1 * DT - 0.02)
+    assert found.speed == pytest.approx(0.2)
+    assert found.acceleration == pytest.approx(2.0)
+    assert found.first == broken_bound(START, ramp(), limits, DT)
+
+
+def test_a_joint_that_rests_takes_nothing_of_a_bound_of_zero(kit) -> None:
+    """Nor adds to the share of the others; one that passes it is infinitely beyond."""
+    still = np.where(np.arange(7) == 2, 0.5, 0.0)
+    found = excess_of(START, ramp(), kit.limits(0.02, still), DT)
+    assert found.speed == pytest.approx(0.2)
+    moving = np.where(np.arange(7) == 2, 0.0, 0.5)
+    assert excess_of(START, ramp(), kit.limits(0.02, moving), DT).speed == np.inf

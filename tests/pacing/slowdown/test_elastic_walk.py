@@ -7,11 +7,24 @@ import numpy as np
 import pytest
 
 from irlx.motion.trapezoid import Trapezoid
-from irlx.pacing.slowdown.elastic_walk import Passage, _least_cost, elastic_walk
+from irlx.pacing.slowdown import elastic_walk as elastic_walk_module
+from irlx.pacing.slowdown.elastic_walk import (
+    Passage,
+    _least_cost,
+    _Steps,
+    _Stretch,
+    _within_sides,
+    elastic_walk,
+)
 from irlx.pacing.slowdown.grid import PathGrid, path_grid
 from irlx.pacing.slowdown.reserve import RESERVE, reserved
+from irlx.pacing.slowdown.room import Room
+from irlx.transform.clearance import SideRows
 from irlx.transform.criteria.least_motion import LeastMotion
-from machines import machine
+from irlx.transform.qp.proxqp import ProxQpSolver
+from irlx.transform.tick import TickSolver
+from irlx.transform.tick_problem import TickProblem
+from machines import least_motion, machine
 from slow_cases import free_rows, grid_of, jacobian_at, slow_limits, used, walked
 
 pytestmark = pytest.mark.req("MOT-21")
@@ -195,3 +208,67 @@ def test_the_one_unknown_is_where_no_other_value_costs_less(seed: int) -> None:
     assert float(cost(np.array([z]), at, rise, price)[0]) <= best + 1e-12 * max(abs(best), 1e-12), (
         f"seed {seed}"
     )
+
+
+# ---- one interval
+
+
+def interval(name: str) -> tuple[TickProblem, Room]:
+    """The first interval of the usual line taken ten knots long, with nothing in its way."""
+    robot, grid = machine(name), grid_of(name)
+    model, n = robot.model(robot.unlimited()), robot.n
+    wide = np.full(n, np.inf)
+    room = Room(-wide, wide, wide, wide, float(np.sum(grid.times[:10])))
+    target = model.targets(grid.poses)[10]
+    return TickProblem(target, robot.start, room.none(), LeastMotion(robot.weights), model.free, None), room
+
+
+@robots
+@pytest.mark.parametrize("off", [0.0, 0.02])
+def test_a_stretch_without_bounds_is_the_least_step_wherever_it_is_sought_from(name: str, off: float) -> None:
+    robot, grid = machine(name), grid_of(name)
+    problem, room = interval(name)
+    model = robot.model(robot.unlimited())
+    begin = off * np.random.default_rng(2).normal(size=robot.n)
+    found = _Stretch(model, TickSolver(model.kinematics, ProxQpSolver()), problem, room, 1e-9).solve(begin)
+    assert found is not None
+    step, stretch = found
+    poses = type(grid.poses)(grid.poses.position[10:11], grid.poses.rotation[10:11])
+    wanted = least_motion(robot, poses, robot.start)[0] - robot.start
+    np.testing.assert_allclose(step, wanted, atol=1e-8)
+    assert stretch == 0.0
+
+
+def test_where_the_way_so_far_leads_nowhere_a_step_is_sought_from_where_the_joints_are(monkeypatch) -> None:
+    robot = machine("arm7")
+    problem, _ = interval("arm7")
+    tight = np.full(7, 1e-9)
+    room = Room(-np.full(7, np.inf), np.full(7, np.inf), tight, tight, 0.04)
+    begins = []
+
+    class Lost(_Stretch):
+        def solve(self, begin):
+            begins.append(begin)
+            return None if len(begins) == 1 else super().solve(begin)
+
+    monkeypatch.setattr(elastic_walk_module, "_Stretch", Lost)
+    continued = np.full(7, 0.3)
+    found = _Steps(robot.model(robot.unlimited()), RESERVE, False).step(problem, room, continued, 0.0)
+    assert isinstance(found, tuple)
+    assert found[1] > 0.0
+    assert [begin.tolist() for begin in begins] == [continued.tolist(), [0.0] * 7]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_one_unknown_keeps_all_inequalities_between_two_ends(seed: int) -> None:
+    """Slopes steep and flat of both signs, against a fine row of values; level ones hold or they do not."""
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(1, 5))
+    slopes = rng.choice([-3.0, -0.4, 0.0, 0.2, 0.7, 5.0], count)
+    bounds = rng.uniform(-1.0, 0.4, count)
+    least, most = _within_sides(SideRows(slopes[:, None], bounds), -2.0, 2.0)
+    tried = np.linspace(-2.0, 2.0, 4001)
+    keeps = np.all(slopes[:, None] * tried >= bounds[:, None], axis=0)
+    inside = (tried >= least) & (tried <= most)
+    edge = np.minimum(np.abs(tried - least), np.abs(tried - most)) < 1e-9
+    assert np.array_equal(keeps[~edge], inside[~edge])

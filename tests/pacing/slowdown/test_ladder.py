@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import itertools
+from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from irlx.pacing.slowdown.clock import plan_clock
+from irlx.pacing.slowdown import ladder
+from irlx.pacing.slowdown.clock import PlannedClock, plan_clock
 from irlx.pacing.slowdown.clock_bounds import clock_bounds
 from irlx.pacing.slowdown.curve import JointCurve
-from irlx.pacing.slowdown.ladder import TimedCurve, timed_curves
+from irlx.pacing.slowdown.ladder import RUNGS, TimedCurve, timed_curves
 from irlx.pacing.slowdown.reserve import RESERVE, reserved
 from irlx.robot.limits import JointLimits
 from machines import machine
@@ -112,3 +116,63 @@ def test_a_dry_run_passes_over_rungs_that_gain_nothing() -> None:
     assert thrifty[0].clock.duration <= 1.01 * durations[0]
     alone = next(timed_curves(model, grid, walk, bounds, acc, (), 0.0, 3e-3, False))
     assert np.array_equal(alone.curve.q, walk)
+
+
+def stand_still_clock(duration: float) -> PlannedClock:
+    """A clock of one interval from rest at rate 2 / duration to its end: it takes that long."""
+    x = np.array([0.0, (2.0 / duration) ** 2])
+    return PlannedClock(np.array([0.0, 1.0]), x, np.zeros(2, np.int8), np.zeros(2, np.int16))
+
+
+@pytest.mark.parametrize(
+    ("least_gain", "durations", "tried"),
+    [
+        # A run tries the lightest smoothing first, and all of it until one loses nothing.
+        (0.0, [1.5, 1.4, 1.3, 1.2], [None, *RUNGS[1:]]),
+        (0.0, [1.5, 1.0, 0.5, 0.5], [None, RUNGS[1]]),
+        (0.0, [1.0, 0.5, 0.5, 0.5], [None]),
+        # A dry run asks the strongest first, and goes on only while that gains what it must.
+        (0.01, [1.5, 1.4, 1.3, 1.2], [None, *RUNGS[:0:-1]]),
+        (0.01, [1.5, 1.495, 1.3, 1.2], [None, RUNGS[3]]),
+        (0.01, [1.5, 1.6, 1.3, 1.2], [None, RUNGS[3]]),
+        (0.01, [1.5, 1.4, 1.399, 1.2], [None, RUNGS[3], RUNGS[2]]),
+    ],
+)
+def test_rungs_are_tried_in_turn_until_one_is_told(least_gain, durations, tried, monkeypatch) -> None:
+    """`durations` of the rungs in the order in which they are tried, the programme taking 1 s."""
+    seen: list[object] = []
+
+    def timed(model, grid, walked, bounds, acc, rung, pinned, reserve):
+        seen.append(rung)
+        return TimedCurve(None, stand_still_clock(durations[len(seen) - 1]))
+
+    monkeypatch.setattr(ladder, "_timed", timed)
+    limits = machine("arm7").unlimited().with_pair("acceleration", -np.ones(7), np.ones(7))
+    grid = SimpleNamespace(times=np.array([0.25, 0.75]))
+    curves = timed_curves(machine("arm7").model(limits), grid, None, None, 1.0, (), 0.0, least_gain)
+    first = next(curves)
+    assert seen == tried
+    assert first.clock.duration == pytest.approx(min(durations[: len(tried)]))
+
+
+def test_a_curve_is_held_against_what_is_kept_clear_at_its_knots_and_between_them() -> None:
+    """At its own start, and at the times at which the programme is there."""
+    asked = []
+
+    def first_short(q, start, elapsed):
+        asked.append((q, start, elapsed))
+
+    grid = grid_of("arm7")
+    curve = JointCurve(grid.s, free_rows("arm7"))
+    clearance = SimpleNamespace(first_short=first_short)
+    model = replace(machine("arm7").model(), clearance=clearance)
+    assert ladder._clear(model, grid, curve)
+    ((q, start, elapsed),) = asked
+    assert np.array_equal(start, machine("arm7").start)
+    between = [0.5 * (a + b) for a, b in itertools.pairwise(grid.s)]
+    places = np.array(sorted([*grid.s[1:-1].tolist(), *between]))
+    np.testing.assert_allclose(ladder.places_between(grid), places, atol=1e-15)
+    np.testing.assert_allclose(q, curve.at(places), atol=1e-12)
+    times = np.concatenate([[0.0], np.cumsum(grid.times)])
+    np.testing.assert_allclose(elapsed[1::2], times[1:-1], atol=1e-12)
+    np.testing.assert_allclose(elapsed[::2], 0.5 * (times[1:] + times[:-1]), atol=1e-12)

@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from irlx.motion.pose_path import Poses
 from irlx.motion.trapezoid import Trapezoid
+from irlx.pacing.resolution import Resolution
 from irlx.pacing.slowdown import ladder, planned
+from irlx.pacing.slowdown.clock import plan_clock
 from irlx.pacing.slowdown.clock_bounds import Governor, Reserves, clock_bounds
-from irlx.pacing.slowdown.planned import PlannedMotion, Refusal, plan_motion
+from irlx.pacing.slowdown.curve import JointCurve
+from irlx.pacing.slowdown.grid import path_grid
+from irlx.pacing.slowdown.ladder import TimedCurve
+from irlx.pacing.slowdown.planned import PlannedMotion, Refusal, plan_motion, rows_on_clock
 from irlx.transform.clearance import TooNear
-from machines import machine
+from machines import least_motion, machine
 from slow_cases import SPEEDS, WAYS, jacobian_at, slow_limits, used
 from stream_judge import excess
 
@@ -190,3 +199,96 @@ def test_a_merely_slow_limit_is_no_refusal() -> None:
     assert isinstance(found, PlannedMotion)
     assert found.timed.clock.duration > 5.0 * machine_law("arm7").duration
     assert_promised("arm7", limits, found, 0.01)
+
+
+# ---- the stages one by one
+
+
+def first_motion(monkeypatch, answers: list[object]) -> tuple[object, list[object], list[bool]]:
+    """What a task becomes whose curves end in these answers; the curves asked for, and the kinks told of."""
+    robot = machine("arm7")
+    path = robot.line((0.0, -0.02, 0.0))
+    task = robot.task(path, Trapezoid.fastest(path.length, 0.25, 1.5), 0.01)
+    clock = SimpleNamespace(duration=1.0, x=np.ones(3))
+    known = [SimpleNamespace(clock=clock, number=number) for number in range(len(answers))]
+    asked: list[object] = []
+    kinks: list[bool] = []
+
+    def timed_curves(*arguments):
+        kinks.append(arguments[-1])
+        return iter(known)
+
+    def rows_on_clock(model, timed, ticking, least):
+        asked.append(timed.number)
+        return answers[timed.number]
+
+    monkeypatch.setattr(planned, "timed_curves", timed_curves)
+    monkeypatch.setattr(planned, "rows_on_clock", rows_on_clock)
+    monkeypatch.setattr(planned, "_standing", lambda *_: None)
+    return plan_motion(robot.model(robot.unlimited()), task), asked, kinks
+
+
+def test_the_first_curve_whose_rows_keep_all_is_the_motion(monkeypatch) -> None:
+    """Curves behind it are not asked for; those before it are refused. A walk has kinks."""
+    made = PlannedMotion(None, None, None, 1.0)
+    no = Refusal(0.1)
+    assert first_motion(monkeypatch, [made, None, None]) == (made, [0], [True])
+    assert first_motion(monkeypatch, [no, made, None]) == (made, [0, 1], [True])
+    assert first_motion(monkeypatch, [no, no, Refusal(0.2)])[:2] == (Refusal(0.2), [0, 1, 2])
+
+
+@pytest.mark.parametrize("at_once", [True, False])
+def test_a_walk_has_kinks_and_postures_found_all_at_once_have_none(at_once: bool, monkeypatch) -> None:
+    told: list[bool] = []
+
+    def timed_curves(*arguments):
+        told.append(arguments[-1])
+        return iter([])
+
+    robot = machine("arm7")
+    path = robot.line((0.0, -0.02, 0.0))
+    task = robot.task(path, Trapezoid.fastest(path.length, 0.25, 1.5), 0.01)
+    task = replace(task, ticking=replace(task.ticking, resolution=Resolution(8)))
+    still = np.tile(robot.start, (41, 1))
+    monkeypatch.setattr(planned, "_undisturbed", lambda *_: still if at_once else None)
+    monkeypatch.setattr(planned, "elastic_walk", lambda *_: SimpleNamespace(stopped=None, q=still))
+    monkeypatch.setattr(planned, "timed_curves", timed_curves)
+    monkeypatch.setattr(planned, "_outside", lambda *_: Refusal(0.0))
+    plan_motion(robot.model(robot.unlimited()), task)
+    assert told == [not at_once]
+
+
+@pytest.mark.parametrize("row", [None, 0, 4])
+@pytest.mark.parametrize("ticks_a_row", [1, 2])
+def test_rows_are_held_against_what_is_kept_clear_at_their_times(row: int | None, ticks_a_row: int) -> None:
+    """From the start of the motion on; what comes too near is told with its row and its place on the path."""
+    asked, near = [], TooNear(3, 0.0199, 0.02)
+
+    def first_short(q, start, elapsed):
+        asked.append((q, start, elapsed))
+        return None if row is None else (row, near)
+
+    robot, dt = machine("arm7"), 0.01
+    path = robot.line((0.0, -0.02, 0.0))
+    grid = path_grid(path, Trapezoid.fastest(path.length, 0.25, 1.5))
+    rows = least_motion(robot, Poses(grid.poses.position[1:], grid.poses.rotation[1:]), robot.start)
+    curve = JointCurve(grid.s, np.vstack([robot.start, rows]))
+    clock = plan_clock(clock_bounds(curve, robot.unlimited(), grid.rates, 1.5))
+    assert clock is not None
+    task = robot.task(path, Trapezoid.fastest(path.length, 0.25, 1.5), dt)
+    ticking = replace(task.ticking, resolution=Resolution(ticks_a_row))
+    model = replace(robot.model(robot.unlimited()), clearance=SimpleNamespace(first_short=first_short))
+    found = rows_on_clock(model, TimedCurve(curve, clock), ticking, 0.0)
+    ((q, start, elapsed),) = asked
+    ticks = int(np.ceil(clock.duration / dt - 1e-6))
+    whole = ticks * dt
+    assert np.array_equal(start, robot.start)
+    np.testing.assert_allclose(elapsed, np.linspace(0.0, whole, len(q) + 1)[1:], rtol=1e-12)
+    if row is None:
+        assert isinstance(found, PlannedMotion)
+        assert np.array_equal(found.q, q)
+        return
+    s, _ = clock.at(np.array([elapsed[row] * clock.duration / whole]))
+    assert isinstance(found, Refusal)
+    assert (found.near, found.row) == (near, row)
+    assert found.s == pytest.approx(s[0], rel=1e-9)

@@ -9,11 +9,16 @@ from functools import cache
 import numpy as np
 import pytest
 
+from irlx.motion.pose_path import Poses
+from irlx.motion.trapezoid import Trapezoid
+from irlx.pacing.slowdown import relax as relax_module
 from irlx.pacing.slowdown.elastic_walk import Passage
-from irlx.pacing.slowdown.grid import STEP, PathGrid
-from irlx.pacing.slowdown.relax import Smoothing, _solve_blocks, relax
+from irlx.pacing.slowdown.grid import STEP, PathGrid, Spacing, path_grid
+from irlx.pacing.slowdown.model import Model, null_spaces
+from irlx.pacing.slowdown.near_knots import NearKnots
+from irlx.pacing.slowdown.relax import Smoothing, _Relaxation, _solve_blocks, relax
 from irlx.pacing.slowdown.reserve import RESERVE, reserved
-from machines import machine
+from machines import least_motion, machine
 from slow_cases import grid_of, jacobian_at, slow_limits, walked
 
 pytestmark = pytest.mark.req("MOT-21")
@@ -181,3 +186,110 @@ def test_the_block_band_system_is_that_of_the_dense_matrix(count: int, r: int) -
     right = rng.uniform(-1.0, 1.0, (count, r))
     expected = np.linalg.solve(whole, right.ravel()).reshape(count, r)
     np.testing.assert_allclose(_solve_blocks(*blocks, right), expected, rtol=0, atol=1e-14)
+
+
+# ---- one linearisation
+
+
+@dataclass(frozen=True)
+class Few:
+    """arm7 on a dozen knots, its postures off their walk, a speed limit and a position limit passed."""
+
+    model: Model
+    grid: PathGrid
+    q: np.ndarray
+    walk: np.ndarray
+    bounds: tuple[np.ndarray, np.ndarray]
+    near: NearKnots | None
+
+    def relaxation(self, smoothing: Smoothing) -> _Relaxation:
+        jacobians = self.model.differences(self.q, self.model.targets(self.grid.poses))[1]
+        basis = null_spaces(jacobians)
+        arguments = self.model, self.grid, self.q, basis, self.walk, self.bounds, smoothing, (4,), self.near
+        return _Relaxation(*arguments)
+
+    def objective(self, q: np.ndarray, smoothing: Smoothing) -> float:
+        """The stated sum for postures q, as it is written at the head of the module."""
+        w, limits, ratio = self.model.weights, self.model.limits, (self.grid.step / STEP) ** 2
+        pull = np.full(len(q), (self.grid.step / smoothing.tau) ** 4)
+        pull[4] = 1e5
+        steps, times = np.diff(q, axis=0), self.grid.times[:, None]
+        fast = np.maximum(steps - 0.995 * limits.speed_upper * times, 0.0)
+        fast += np.maximum(0.995 * limits.speed_lower * times - steps, 0.0)
+        out = np.maximum(np.maximum(q - self.bounds[1], self.bounds[0] - q), 0.0)
+        found = np.sum(bend(self.grid.s, q) ** 2 @ w) + pull @ ((q - self.walk) ** 2 @ w)
+        found += smoothing.mu * ratio * np.sum(fast**2 @ w) + 1e5 * np.sum(out**2 @ w)
+        if self.near is not None:
+            for knot, room, rate in zip(self.near.knots, self.near.room, self.near.rates, strict=True):
+                lacking = max(-(room + rate @ (q - self.q)[knot]), 0.0)
+                found += 1e5 * np.mean(w) * lacking**2 / (rate @ rate)
+        return float(found)
+
+
+def few(near: bool, limited: bool = True) -> Few:
+    robot, rng = machine("arm7"), np.random.default_rng(3)
+    path = robot.line((0.0, -0.2, 0.1))
+    grid = path_grid(path, Trapezoid.fastest(path.length, 0.25, 1.5), Spacing(20.0, 12))
+    walk = np.vstack([robot.start, least_motion(robot, poses_behind(grid), robot.start)])
+    q = walk + 0.003 * rng.normal(size=walk.shape)
+    limits, side = robot.unlimited(), np.full(walk.shape, np.inf)
+    upper, lower = side.copy(), -side
+    if limited:
+        steps = np.diff(q, axis=0) / grid.times[:, None]
+        limits = limits.with_pair("speed", 0.9 * steps.min(axis=0), 0.8 * steps.max(axis=0))
+        upper[:, 1], lower[:, 3] = np.max(q[:, 1]) - 0.003, np.min(q[:, 3]) + 0.002
+    rates = rng.normal(size=(4, 7))
+    pairs = NearKnots(np.array([2, 5, 5, 9]), np.array([-0.004, 0.002, -0.001, 0.03]), rates)
+    return Few(robot.model(limits), grid, q, walk, (lower, upper), pairs if near else None)
+
+
+def poses_behind(grid: PathGrid) -> Poses:
+    return Poses(grid.poses.position[1:], grid.poses.rotation[1:])
+
+
+@pytest.mark.parametrize("near", [False, True])
+def test_the_sum_is_the_stated_one(near: bool) -> None:
+    of, smoothing = few(near), Smoothing(0.1, 1.0)
+    rng = np.random.default_rng(1)
+    relaxation = of.relaxation(smoothing)
+    for size in (0.0, 1e-3, 3e-2):
+        change = size * rng.normal(size=of.q.shape)
+        wanted = of.objective(of.q + change, smoothing)
+        assert relaxation._sum(change) == pytest.approx(wanted, rel=1e-9)
+
+
+@pytest.mark.parametrize("near", [False, True])
+@pytest.mark.parametrize("limited", [False, True])
+def test_no_step_on_the_null_spaces_lowers_the_sum_below_that_of_the_step(near: bool, limited: bool) -> None:
+    """The sum is convex there: where small changes of single knots cost, all others do as well."""
+    of, smoothing = few(near, limited), Smoothing(0.1, 1.0)
+    relaxation = of.relaxation(smoothing)
+    step = np.zeros_like(of.q)
+    step[1:-1] = relaxation.step()
+    least = relaxation._sum(step)
+    assert least < 0.9 * relaxation._sum(np.zeros_like(step))
+    for knot in range(1, len(step) - 1):
+        for size in (1e-4, -1e-4):
+            other = step.copy()
+            other[knot] += size * relaxation._basis[knot][:, 0]
+            assert relaxation._sum(other) > least
+
+
+def test_what_is_near_is_looked_for_where_something_is_kept_clear(monkeypatch) -> None:
+    """In every round about the postures that it begins with; without a clearance nobody asks."""
+    asked: list[np.ndarray] = []
+
+    def near_knots(model, grid, q, reserve):
+        assert reserve == 0.002
+        asked.append(q)
+        return of.near
+
+    monkeypatch.setattr(relax_module, "near_knots", near_knots)
+    of, smoothing = few(True, limited=False), Smoothing(0.1, 1.0)
+    arguments = of.grid, of.walk, of.bounds, smoothing, (), 0.002
+    alone = relax(of.model, *arguments)
+    assert not asked
+    kept = relax(replace(of.model, clearance=object()), *arguments)
+    assert np.array_equal(asked[0], of.walk)
+    # The linear room that was lacking is made.
+    assert np.max(np.abs(kept - alone)) > 1e-4
