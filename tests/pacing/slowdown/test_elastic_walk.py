@@ -272,3 +272,21 @@ def test_the_one_unknown_keeps_all_inequalities_between_two_ends(seed: int) -> N
     inside = (tried >= least) & (tried <= most)
     edge = np.minimum(np.abs(tried - least), np.abs(tried - most)) < 1e-9
     assert np.array_equal(keeps[~edge], inside[~edge])
+
+
+@pytest.mark.parametrize("lost", [[0], [3, 5], list(range(7))])
+def test_a_step_that_is_no_number_in_some_joint_ends_the_search(lost: list[int]) -> None:
+    """What the next round would begin with is no posture."""
+    robot = machine("arm7")
+    model = robot.model(robot.unlimited())
+    problem, room = interval("arm7")
+    rounds = []
+
+    class Lost(_Stretch):
+        def _round(self, whole):
+            rounds.append(whole)
+            return np.where(np.isin(np.arange(7), lost), np.nan, 0.1), 0.0
+
+    solver = TickSolver(model.kinematics, ProxQpSolver())
+    assert Lost(model, solver, problem, room, 1e-9).solve(np.zeros(7)) is None
+    assert len(rounds) == 1
