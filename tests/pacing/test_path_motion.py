@@ -18,7 +18,7 @@ from irlx.pacing.path_motion import Failure, PacedPath, PathMotion, _walked, pac
 from irlx.pacing.posture_term import PostureTerm
 from irlx.pacing.slowdown.clock_bounds import Governor
 from irlx.pacing.slowdown.planned import Refusal
-from irlx.pacing.walk import walk
+from irlx.pacing.walk import Walk, walk
 from irlx.transform.criteria.least_motion import LeastMotion
 from irlx.transform.qp.proxqp import ProxQpSolver
 from irlx.transform.step_bounds import StepLimiter
@@ -148,26 +148,53 @@ def test_the_stop_of_a_walk_is_judged_too(pushed: bool) -> None:
         assert (broken.kind, broken.row) == (LimitKind.ACCELERATION, len(walked.q))
 
 
+class Ways:
+    """A motion whose terms and whose last walk have a way or have none, as told; `asked` in their order."""
+
+    def __init__(self, monkeypatch, terms: dict[str, bool], last: tuple[bool, bool]) -> None:
+        motion = motion_of("arm7", 0.01)
+        other = replace(motion.term) if "second" in terms else None
+        self.motion, self.asked = replace(motion, term=replace(motion.term, otherwise=other)), list[str]()
+        nothing = np.empty((0, 7)), np.empty((0, 7), np.int8)
+        self.found = {
+            term: PacedPath(*nothing, (), 0, motion.term) if works else Failure(None, None, Refusal(0.1))
+            for term, works in terms.items()
+        }
+        halt, broken = (None if done else "found" for done in last)
+        self.walk = Walk(*nothing, (), 5, halt), broken
+        monkeypatch.setattr(path_motion, "_paced", self._paced)
+        monkeypatch.setattr(path_motion, "_walked", self._walked)
+
+    def restraining(self) -> str:
+        return "restraining solver"
+
+    def _paced(self, given: PathMotion, *_) -> PacedPath | Failure:
+        self.asked.append("first" if given.term is self.motion.term else "second")
+        return self.found[self.asked[-1]]
+
+    def _walked(self, given: PathMotion, model, solver, thorough: bool):
+        assert (given, solver, thorough) == (self.motion, "restraining solver", True)
+        self.asked.append("walk")
+        return self.walk
+
+
 @pytest.mark.parametrize("first", [False, True])
 @pytest.mark.parametrize("second", [None, False, True])
 def test_another_posture_term_serves_where_the_first_one_fails(monkeypatch, first, second) -> None:
-    """A way is a way; of two failures the first one is told, which is of what was asked for."""
-    motion = motion_of("arm7", 0.01)
-    other = replace(motion.term) if second is not None else None
-    motion = replace(motion, term=replace(motion.term, otherwise=other))
-    found = {
-        way: PacedPath(np.empty((0, 7)), np.empty((0, 7), np.int8), (), 0, motion.term)
-        if works
-        else Failure(None, None, Refusal(0.1))
-        for way, works in (("first", first), ("second", bool(second)))
-    }
-    asked = []
+    """A way is a way; of failures the first one is told, which is of what was asked for."""
+    terms = {"first": first} | ({} if second is None else {"second": second})
+    ways = Ways(monkeypatch, terms, (False, True))
+    chosen = pace_path(ways.motion, None, ways)
+    assert chosen is ways.found["second" if second and not first else "first"]
+    tried = ["first"] if first or second is None else ["first", "second"]
+    assert ways.asked == tried + ([] if first or second else ["walk"])
 
-    def paced_by(given: PathMotion, *_):
-        asked.append("first" if given.term is motion.term else "second")
-        return found[asked[-1]]
 
-    monkeypatch.setattr(path_motion, "_paced", paced_by)
-    chosen = pace_path(motion, None, None)
-    assert chosen is found["second" if second and not first else "first"]
-    assert asked == (["first"] if first or second is None else ["first", "second"])
+@pytest.mark.parametrize("last", [(True, True), (True, False), (False, True)])
+def test_the_last_resort_is_a_walk_that_holds_its_criterion_back(monkeypatch, last) -> None:
+    """It counts where every tick is done and no row breaks a bound."""
+    ways = Ways(monkeypatch, {"first": False}, last)
+    chosen = pace_path(ways.motion, None, ways)
+    assert ways.asked == ["first", "walk"]
+    assert isinstance(chosen, PacedPath if all(last) else Failure)
+    assert chosen is ways.found["first"] or chosen.iterations == 5
