@@ -21,7 +21,7 @@ TOGETHER, SPREAD = 32, 0.2
 """Rows sought together, and the part by which a way on the curve may differ from that from row to row."""
 
 TRIED = 8
-"""Samples tried for a row that is on the curve about none of those sought first."""
+"""Cells tried for a row that is on the curve about none of the samples sought first."""
 
 NEWTON, LAST_STEP = 12, 1e-13
 """Steps of Newton's method for the parameter at a way at most, and the step after which it ends."""
@@ -68,7 +68,8 @@ class SplineCurve:
         before, found = self.points(np.array([near])), []
         for first in range(0, len(positions), TOGETHER):
             rows = positions[first : first + TOGETHER]
-            found.append(self._found(rows, self._seek(rows, near, before)))
+            seeds, due = self._seek(rows, near, before)
+            found.append(self._found(rows, seeds, due))
             near, before = float(found[-1][-1]), rows[-1:]
         return np.concatenate(found) if found else np.zeros(0)
 
@@ -78,21 +79,25 @@ class SplineCurve:
         apart = np.sum((positions[:, None] - points) ** 2, axis=2)
         return self._nearest(positions, self._grid[np.argmin(apart, axis=1)])
 
-    def _found(self, positions: Floats, seeds: Floats) -> Floats:
-        """Way (R,) to the nearest points about the seeds, or, of rows that are on none of them, about any."""
+    def _found(self, positions: Floats, seeds: Floats, due: Floats) -> Floats:
+        """Way (R,) to the nearest points about the seeds; of rows that are on none of them to those about any
+        cell, the nearest to where they are `due` (R,)."""
         way = self._nearest(positions, seeds)
         off = np.linalg.norm(positions - self.points(way), axis=1)
         for row in np.flatnonzero(off > PATH_POSITION).tolist():
-            # In a narrow bend the nearest sample may be one of the other side: all that are near are tried.
-            apart = np.sum((positions[row] - self._samples) ** 2, axis=1)
-            places = self._grid[np.argsort(apart)[:TRIED]]
-            other = self._nearest(np.repeat(positions[row : row + 1], TRIED, axis=0), places)
+            # In a narrow bend the nearest sample may be one of the other side, and beside a long piece one of
+            # a short one: tried are the cells that may come nearest, by their samples and their length.
+            apart = np.linalg.norm(positions[row] - self._samples, axis=1)
+            least = np.minimum(apart[:-1], apart[1:]) - 0.5 * np.diff(self._ways)
+            cells = np.argsort(least)[:TRIED]
+            places = 0.5 * (self._grid[cells] + self._grid[cells + 1])
+            other = self._nearest(np.repeat(positions[row : row + 1], len(cells), axis=0), places)
             apart = np.linalg.norm(positions[row] - self.points(other), axis=1)
             fits = np.flatnonzero(apart <= PATH_POSITION)
             if not fits.size:
                 # Off the curve, and with it perhaps all that follow: these are not sought for ever.
                 break
-            way[row] = other[fits[np.argmin(np.abs(other[fits] - way[row]))]]
+            way[row] = other[fits[np.argmin(np.abs(other[fits] - due[row]))]]
         return way
 
     def _nearest(self, positions: Floats, seeds: Floats) -> Floats:
@@ -144,8 +149,9 @@ class SplineCurve:
         start, end = self._turnings[piece], self._turnings[piece + 1]
         return BlendedTurn(start.rotation, (start, end), width)
 
-    def _seek(self, positions: Floats, near: float, before: Floats) -> Floats:
-        """Sample nearest to each position, of those about as far on as the rows went: it may cross itself."""
+    def _seek(self, positions: Floats, near: float, before: Floats) -> tuple[Floats, Floats]:
+        """Parameter of the sample nearest to each position, of those about as far on as the rows went, for
+        the curve may cross itself; and the way at which the rows are due by that."""
         points = self._samples
         moved = np.cumsum(np.linalg.norm(np.diff(positions, axis=0, prepend=before), axis=1))
         due = np.clip(near + moved, 0.0, self.length)
@@ -153,7 +159,7 @@ class SplineCurve:
         slack = np.diff(self._ways)[cell] + SPREAD * moved
         apart = np.sum((positions[:, None] - points) ** 2, axis=2)
         apart = np.where(np.abs(self._ways - due[:, None]) > slack[:, None], np.inf, apart)
-        return np.asarray(self._grid[np.argmin(apart, axis=1)])
+        return np.asarray(self._grid[np.argmin(apart, axis=1)]), due
 
     def _piece(self, u: Floats) -> tuple[Integers, Floats]:
         piece = np.clip(u.astype(np.int64), 0, self._pieces - 1)
