@@ -61,6 +61,10 @@ tick_ms = 100
 """
 FINE = {"IRL436"}
 """Codes of what ticks of 50 ms would not show."""
+LONG_TICK = 50.0
+"""Of cells on pages that name no tick, ms: what they show does not depend on it, what it costs does."""
+STEPS = 100_000
+"""More than any page needs: endless loops end sooner than by default."""
 
 
 def page_of(code):
@@ -86,8 +90,9 @@ def diagnostics_of(folder, text, motion=False, fine=False):
     program.write_text(fence(text, "irl") or PLAIN_PROGRAM, encoding="utf-8")
     cell.write_text(fence(text, "toml") or plain, encoding="utf-8")
     found = list(irlx.check(program, cell=cell, motion=motion))
+    tick = None if "tick_ms" in cell.read_text("utf-8") else LONG_TICK
     try:
-        found += irlx.run(program, cell=cell).diagnostics
+        found += irlx.run(program, cell=cell, tick_ms=tick, max_steps=STEPS).diagnostics
     except irlx.IrlxError as error:
         found += error.diagnostics
     return found
