@@ -17,7 +17,7 @@ from irlx.streams.error import cannot_write
 
 pytestmark = pytest.mark.req("STR-05")
 
-CELL = '[robot]\nmodel = "planar3"\n[motion]\ntick_ms = 10\n'
+CELL = '[robot]\nmodel = "planar3"\n[motion]\ntick_ms = 20\n'
 TEXT = """PROGRAM p;
 VAR OUTPUT BOOL: gripper AT 1;
   MAIN_JOINT_SPEED_MIN: slow := (-60., -60., -60.);
@@ -44,22 +44,30 @@ def program(tmp_path: Path) -> Path:
     return path
 
 
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> irlx.Run:
+    """The run of the program in memory."""
+    folder = tmp_path_factory.mktemp("whole")
+    (folder / "p.toml").write_text(CELL, encoding="utf-8")
+    (folder / "p.irl").write_text(TEXT, encoding="utf-8")
+    return irlx.run(folder / "p.irl")
+
+
 def visible(folder: Path) -> list[str]:
     return sorted(entry.name for entry in folder.iterdir())
 
 
-def test_files_are_those_of_a_run_in_memory(program: Path, tmp_path: Path) -> None:
-    run = irlx.run(program)
+def test_files_are_those_of_a_run_in_memory(program: Path, whole: irlx.Run, tmp_path: Path) -> None:
     outputs = [tmp_path / f"out{ending}" for ending in KNOWN_ENDINGS]
     outcome = irlx.record(program, outputs)
     assert outcome.files == tuple(outputs)
-    assert outcome.summary == run.summary
-    assert outcome.events == run.events
+    assert outcome.summary == whole.summary
+    assert outcome.events == whole.events
     assert outcome.complete
-    assert outcome.joint_names == run.joint_names
+    assert outcome.joint_names == whole.joint_names
     for path in outputs:
         other = tmp_path / f"memory{path.suffix}"
-        run.save(other)
+        whole.save(other)
         one, two = (read_stream(found) for found in (path, other))
         assert np.array_equal(one.q, two.q)
         if path.is_file():
@@ -67,8 +75,9 @@ def test_files_are_those_of_a_run_in_memory(program: Path, tmp_path: Path) -> No
     assert irlx.verify(outputs[0], program).passed
 
 
-def test_a_run_that_ends_in_an_error_leaves_partial_files(program: Path, tmp_path: Path) -> None:
-    whole = irlx.run(program)
+def test_a_run_that_ends_in_an_error_leaves_partial_files(
+    program: Path, whole: irlx.Run, tmp_path: Path
+) -> None:
     text = TEXT.replace("CYCLICEND;", "MOVE LIN POSITION(90000, 0, 0);")
     program.write_text(text, encoding="utf-8")
     with pytest.raises(irlx.RunError) as caught:
