@@ -16,7 +16,7 @@ PROGRAMS = Path(__file__).parents[2] / "programs" / "koch"
 
 @pytest.mark.req("LANG-65")
 @pytest.mark.req("LANG-69")
-@pytest.mark.parametrize("tick", ["50", "7"])
+@pytest.mark.parametrize("tick", ["50", "17"])
 def test_the_sample_program(tmp_path, capsys, tick):
     out = tmp_path / "a.irdata"
     arguments = ["run", str(PROGRAMS / "reconfiguration.irl"), "-o", str(out), "--tick", tick]
@@ -63,6 +63,8 @@ ENDPROGRAM
     assert np.all(np.diff(away) <= 1e-9)
 
 
+TICK = 20
+"""Of the circles, ms."""
 VIA = """PROGRAM p;
 VAR POSITION: top := (11400, 1000, 3600), far := (11300, 1000, 3500);
 MAIN_JOINT: raised, folded;
@@ -88,7 +90,7 @@ def circled(folder, inside):
 
     def run(clause):
         (folder / "p.irl").write_text(VIA.format(clause=clause), encoding="utf-8")
-        done = inside("run", "p.irl", "--tick", "10")
+        done = inside("run", "p.irl", "--tick", str(TICK))
         assert done.returncode == 0, done.stderr
         done = inside("verify", "p.irdata", "--program", "p.irl")
         assert done.returncode == 0, done.stdout
@@ -126,7 +128,7 @@ def test_a_posture_for_the_via_point(circled, inside, limits):
     if limits:
         fastest = np.where(np.arange(11) == 9, 0.1, np.radians(20.0))
         for _, q, _ in (plain, led):
-            assert np.max(np.abs(np.diff(q, axis=0)) / 0.01 / fastest) <= 1.0 + 1e-6
+            assert np.max(np.abs(np.diff(q, axis=0)) / (1e-3 * TICK) / fastest) <= 1.0 + 1e-6
         assert len(led[1]) > len(plain[1])
 
 
