@@ -132,5 +132,7 @@ def test_a_cold_check(tmp_path):
         command = [sys.executable, "-m", "irlx", "check", "long.irl"]
         subprocess.run(command, cwd=tmp_path, capture_output=True, check=True)
         times.append(time.perf_counter() - start)
-    # The aim is 0.5 s; a machine that does other work, or keeps no bytecode, may take three times as long.
-    assert min(times) < 1.5
+        # The aim is 0.5 s; a machine that does other work or keeps no bytecode may take three times as long.
+        if times[-1] < 1.5:
+            return
+    pytest.fail(f"three checks took {times} s")
