@@ -32,7 +32,7 @@ from irlx.cell.cell import Cell
 from irlx.cell.load import load_cell
 from irlx.cell.robot_data import robot_data_folder
 from irlx.verifier.geometry.forward import forward
-from long_run import chequered
+from long_run import diagonal
 from machines import machine
 
 pytestmark = [pytest.mark.req("TRF-05"), pytest.mark.req("TRF-15"), pytest.mark.req("LANG-65")]
@@ -268,7 +268,7 @@ def cases() -> list:
     return [pytest.param(name, marks=lacking if name == "panda" else (), id=name) for name in ROBOTS]
 
 
-@pytest.mark.parametrize(("name", "tick"), chequered(cases(), TICKS))
+@pytest.mark.parametrize(("name", "tick"), diagonal(cases(), TICKS))
 def test_reconfigurations_keep_their_promises(tmp_path, name: str, tick: float) -> None:
     ends = {seed: one_case(tmp_path, name, tick, seed) for seed in range(QUICK)}
     print(f"robot {name}, tick {tick} ms, seeds and ends: {ends}")

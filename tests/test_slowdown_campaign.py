@@ -18,7 +18,7 @@ import irlx
 from irlx.cell.cell import Cell
 from irlx.cell.load import load_cell
 from irlx.cell.robot_data import robot_data_folder
-from long_run import chequered
+from long_run import diagonal
 from machines import machine
 from stream_judge import Written, excess, on_line
 
@@ -217,7 +217,7 @@ def cases(count: int) -> list:
     ]
 
 
-@pytest.mark.parametrize(("name", "seeds", "tick"), chequered(cases(QUICK), TICKS))
+@pytest.mark.parametrize(("name", "seeds", "tick"), diagonal(cases(QUICK), TICKS, 2))
 def test_bounds_and_path_hold_or_the_refusal_is_located(
     tmp_path, name: str, seeds: range, tick: float
 ) -> None:

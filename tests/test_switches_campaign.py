@@ -30,7 +30,7 @@ from scipy.spatial.transform import Rotation
 import irlx
 from irlx.cell.robot_data import robot_data_folder
 from irlx.verifier.geometry.forward import forward
-from long_run import chequered
+from long_run import diagonal
 from machines import Machine, machine
 
 pytestmark = [pytest.mark.req("TRF-14"), pytest.mark.req("TRF-06"), pytest.mark.req("MOT-20")]
@@ -347,7 +347,7 @@ def cases() -> list:
     return [pytest.param(name, marks=lacking if name == "panda" else (), id=name) for name in ROBOTS]
 
 
-@pytest.mark.parametrize(("name", "tick"), chequered(cases(), TICKS[1:]))
+@pytest.mark.parametrize(("name", "tick"), diagonal(cases(), TICKS[1:]))
 def test_switching_keeps_every_bound(tmp_path, name: str, tick: float) -> None:
     ends = {seed: one_case(tmp_path, name, tick, seed) for seed in range(QUICK)}
     print(f"robot {name}, tick {tick} ms, seeds and ends: {ends}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 import pytest
@@ -29,6 +30,8 @@ from slow_cases import SPEEDS, WAYS
 
 DT = 0.004
 NAMES = ("arm7", "koch11")
+KINDS = 7
+"""Cases of a machine."""
 BESIDE = 0.12
 """Way (m) from the tool to the middle of a ball of 50 mm, whose influence reaches 60 mm."""
 pytestmark = [pytest.mark.req("MOT-20"), pytest.mark.req("TRF-10")]
@@ -74,12 +77,14 @@ class Case:
         return walk(ticks, limiter, lambda _: criterion, free, robot.start, asked, False, clear)
 
 
+@cache
 def used(name: str) -> tuple[np.ndarray, np.ndarray]:
     """Rows of the walk without limits, and the largest speeds of its joints."""
     q = Case(name, machine(name).unlimited()).walk(TickByTick).q
     return q, np.max(np.abs(np.diff(q, axis=0)), axis=0) / DT
 
 
+@cache
 def cases() -> list[Case]:
     found = []
     for name in NAMES:
@@ -106,12 +111,19 @@ def cases() -> list[Case]:
         # One that stands still: no step of it is allowed at all.
         still = np.where(np.arange(len(fastest)) == joint, 0.0, 10.0)
         found.append(Case(name, free.with_pair("speed", -still, still)))
+    assert len(found) == KINDS * len(NAMES)
     return found
 
 
-@pytest.mark.parametrize("case", cases(), ids=str)
-def test_rows_are_the_very_ones_of_single_ticks(case: Case) -> None:
-    ahead, singly = case.walk(), case.walk(TickByTick)
+@cache
+def ahead_of(number: int) -> Walk:
+    """The walk of a case that runs ahead."""
+    return cases()[number].walk()
+
+
+@pytest.mark.parametrize("number", range(len(NAMES) * KINDS))
+def test_rows_are_the_very_ones_of_single_ticks(number: int) -> None:
+    ahead, singly = ahead_of(number), cases()[number].walk(TickByTick)
     assert np.all(ahead.active == singly.active)
     # Ticks that begin outside their bounds take other steps, which lead to the same but for rounding.
     np.testing.assert_allclose(ahead.q, singly.q, rtol=0, atol=1e-13 if np.any(singly.active) else 0.0)
@@ -141,7 +153,7 @@ def test_a_limit_that_a_row_meets_to_the_last_bit_is_kept(name: str) -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_bounds_bite_in_these_cases(name: str) -> None:
     """Of the cases at least two have joints held in the middle of the way, and go on behind that."""
-    walks = [case.walk() for case in cases() if case.name == name]
+    walks = [ahead_of(number) for number, case in enumerate(cases()) if case.name == name]
     held = [np.any(found.active, axis=1) for found in walks if found.halt is None]
     assert sum(bool(np.any(rows[2:-2]) and not np.all(rows)) for rows in held) >= 2
 

@@ -20,6 +20,26 @@ def portions(seeds: range, size: int = 20) -> list[range]:
     return [seeds[start : start + size] for start in range(0, len(seeds), size)]
 
 
+def diagonal(rows: list, columns: Iterable[object], turned: int = 0) -> list[object]:
+    """All pairs of a row, a `pytest.param` with an id, and a column; all but a diagonal are marked slow.
+
+    It begins `turned` rows further on. Each row and each column keeps one of its pairs in the default run,
+    and those of the shorter side more where they are needed for that.
+    """
+    ends = list(columns)
+    count = min(len(rows), len(ends))
+    return [
+        pytest.param(
+            *row.values,
+            column,
+            marks=[*row.marks, *([pytest.mark.slow] if (i - j - turned) % count else [])],
+            id=f"{row.id}-{column}",
+        )
+        for i, row in enumerate(rows)
+        for j, column in enumerate(ends)
+    ]
+
+
 def chequered(rows: list, columns: Iterable[object]) -> list[object]:
     """All pairs of a row, a `pytest.param` with an id, and a column; every other pair is marked slow.
 
