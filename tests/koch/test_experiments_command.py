@@ -75,7 +75,7 @@ def test_without_matplotlib_one_line_and_the_facts(command, tmp_path) -> None:
 
 def test_weight_and_limit_can_be_others(command) -> None:
     """Ten times the weight: joint 10 moves less; 200 deg/s2 holds where 350 would have been used."""
-    done = command("6.3", "--weight", "50", "--acceleration", "200", "--facts")
+    done = command("6.3", "--weight", "50", "--acceleration", "200", "--facts", "--tick", "100")
     assert done.returncode == 0, done.stderr
     facts = {line[2:46].strip(): line[46:].strip() for line in done.stdout.splitlines()}
     assert float(facts["largest of all joints but 10, both limited"]) <= 200.0
@@ -83,7 +83,7 @@ def test_weight_and_limit_can_be_others(command) -> None:
     assert float(free) < 50.0
 
 
-@pytest.mark.parametrize("name", first(1, ["6.6", "6.3"]))
+@pytest.mark.parametrize("name", first(1, ["6.3", "6.6"]))
 def test_drawn_where_matplotlib_is(tmp_path, name: str) -> None:
     pytest.importorskip("matplotlib")
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(SOURCE), *sys.path])}
