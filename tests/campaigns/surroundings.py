@@ -24,7 +24,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parents[1] / "src")]
 
-from surrounded import outside, unusual  # noqa: E402
+from surrounded import outside, places, unusual  # noqa: E402
 from surrounded.inside import disk, kills, twice  # noqa: E402
 from surrounded.place import Place, Trial  # noqa: E402
 
@@ -39,8 +39,12 @@ PARTS: dict[str, tuple[Callable[[Place, random.Random, int], Iterator[Trial]], i
     "inputs": (unusual.inputs, 60),
     "channels": (unusual.channels, 60),
     "programs": (unusual.programs, 40),
+    "places": (places.places, 200),
+    "names": (places.names, 60),
+    "clocks": (places.clocks, 15),
+    "masses": (places.masses, 6),
 }
-"""Every part, and how many trials it makes by default; the last four at most, they may have fewer."""
+"""Every part, and how many trials it makes by default; from `settings` on at most, they may have fewer."""
 
 
 def main() -> int:

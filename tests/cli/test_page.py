@@ -124,7 +124,7 @@ def test_the_program_cannot_write_over_its_page(inside, folder):
 def test_of_a_run_that_ends_in_an_error_a_partial_page_appears(inside, folder, names):
     (folder / "p.irl").write_text(BEYOND, encoding="utf-8")
     (folder / "p.html").write_text("earlier", encoding="utf-8")
-    done = inside("run", "p.irl", "-o", "p.csv", "--html", "p.html")
+    done = inside("run", folder / "p.irl", "-o", "p.csv", "--html", "p.html")
     assert done.returncode == 1
     assert names(folder) == ["p.html", *FILES[:1], "p.partial.csv", "p.partial.html", "p.toml"]
     assert "irlx: p.html is left as it was, from an earlier run\n" in done.stderr
@@ -132,6 +132,8 @@ def test_of_a_run_that_ends_in_an_error_a_partial_page_appears(inside, folder, n
     assert (folder / "p.html").read_text(encoding="utf-8") == "earlier"
     data = page_data(folder / "p.partial.html")
     assert data["complete"] is False
+    assert str(folder) in done.stderr
+    assert str(folder) not in json.dumps(data), "a page tells where its maker keeps files"
     (stop,) = (event for event in data["events"] if event["kind"] == "stop")
     assert stop["first"] == data["frames"]["tick"][-1] > 0
     assert stop["label"].startswith("ended by IRL5")
@@ -199,11 +201,12 @@ def test_a_link_that_cannot_be_drawn_is_told_and_costs_no_run(inside, folder):
     (folder / "arm.urdf").write_text(drawn, encoding="utf-8")
     own = packaged_cell("planar3").decode().replace("[robot]", '[robot]\nmodel = "arm.urdf"')
     (folder / "p.toml").write_text(own, encoding="utf-8")
-    done = inside("run", "p.irl", "--html", "p.html", "-o", "p.csv", "--tick", "20")
+    done = inside("run", folder / "p.irl", "--html", "p.html", "-o", "p.csv", "--tick", "20")
     assert done.returncode == 0
-    assert "p.toml: robot.model: warning IRL721: link '" in done.stderr
+    assert f"{folder}/p.toml: robot.model: warning IRL721: link '" in done.stderr
     assert "there is no mesh lost.stl" in done.stderr
-    assert any("IRL721" in words for words in page_data(folder / "p.html")["diagnostics"])
+    (words,) = page_data(folder / "p.html")["diagnostics"]
+    assert words.startswith("p.toml: robot.model: warning IRL721: link '")
 
 
 @pytest.mark.req("QA-08")

@@ -1,13 +1,17 @@
 """Inputs that are no files, too little memory, and settings around a run that change no byte."""
 
 import os
+import resource
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 import irlx
-from irlx.cli.main import main
+from irlx.cli import output
+from irlx.cli.little_memory import expect_little_memory
+from irlx.cli.main import _NO_MEMORY, main, use_one_thread
 from irlx.report.figures import Figures
 from irlx.streams import KNOWN_ENDINGS
 from stream_files import content_of
@@ -88,6 +92,47 @@ def test_too_little_memory(folder, names, monkeypatch, capsys):
     assert "error IRL090: internal error: the memory that this process may use is used up\n" in told
     assert "fault of irlx" not in told
     assert "p.irdata" not in names(folder)
+
+
+def test_too_little_memory_for_a_message(folder, monkeypatch, capsys):
+    """What a message is made of is loaded only when there is one."""
+
+    def nothing_left(*_):
+        raise MemoryError
+
+    monkeypatch.setattr(output, "print_diagnostics", nothing_left)
+    monkeypatch.chdir(folder)
+    assert main(["check", "nowhere.irl"]) == 2
+    assert capsys.readouterr().err == f"{_NO_MEMORY}\n"
+
+
+def test_libraries_for_which_there_is_no_room(monkeypatch):
+    """They would end the process themselves, or try for ever: none is loaded then. Other modules are."""
+    before = resource.getrlimit(resource.RLIMIT_AS)
+    monkeypatch.setattr(sys, "meta_path", [])
+    if before[0] == resource.RLIM_INFINITY:
+        expect_little_memory()
+        assert sys.meta_path == []
+    size = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+    resource.setrlimit(resource.RLIMIT_AS, (size + (50 << 20), before[1]))
+    try:
+        expect_little_memory()
+        (keeper,) = sys.meta_path
+        assert keeper.find_spec("json", None) is None
+        for name in ("numpy", "scipy"):
+            with pytest.raises(MemoryError):
+                keeper.find_spec(name, None)
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, before)
+    assert keeper.find_spec("numpy", None) is None
+
+
+def test_one_thread_whatever_is_asked_for(monkeypatch):
+    """The last bits of programs/snake are other ones with two; the console entry calls this first."""
+    monkeypatch.setattr(os, "environ", {"OPENBLAS_NUM_THREADS": "2", "HOME": "/"})
+    use_one_thread()
+    assert os.environ["OPENBLAS_NUM_THREADS"] == os.environ["OMP_NUM_THREADS"] == "1"
+    assert os.environ["HOME"] == "/"
 
 
 SETTINGS = [

@@ -1,5 +1,7 @@
 """Distances between a robot and what it keeps clear of."""
 
+import subprocess
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -323,3 +325,22 @@ def test_levers_bound_what_two_arms_come_nearer():
         assert np.all(nearer <= bound + 1e-9)
         most = max(most, float(np.max(nearer / np.maximum(bound, 1e-12))))
     assert most > 0.2
+
+
+BOXES = """
+import coal, numpy as np
+from irlx.scene.collision_shape import collision_shape
+from irlx.solids.shape import Box, Cylinder
+solids = collision_shape(Cylinder(1.0, 2.0)), collision_shape(Box((2e4, 2e4, 2e4)))
+poses = coal.Transform3s.Identity(), coal.Transform3s(np.eye(3), np.array([10005.0, 0.0, 0.0]))
+asked = coal.DistanceRequest()
+print(coal.distance(solids[0], poses[0], solids[1], poses[1], asked, coal.DistanceResult()) - 4.0)
+"""
+
+
+@pytest.mark.req("QA-05")
+def test_boxes_are_as_large_whatever_was_asked_first():
+    """By itself, coal takes all boxes of a process for 1e-10 larger where the first question is this one."""
+    call = [sys.executable, "-c", BOXES]
+    done = subprocess.run(call, capture_output=True, text=True, check=True)
+    assert abs(float(done.stdout)) < 1e-8, "1e-6 where boxes are larger"

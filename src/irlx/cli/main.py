@@ -14,6 +14,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from irlx._version import __version__
+from irlx.cli.little_memory import expect_little_memory
 from irlx.cli.parser import CommandParser
 from irlx.cli.standard_channels import OutputLost, drop_output, take_channels
 from irlx.cli.stopping import Stopped, heard_signal, heed_signals, ignore_signals, stopped_code
@@ -40,6 +41,10 @@ _COMMANDS = (
 """Modules of the commands, in the order of the help."""
 _STOPPED = 128
 """Exit codes from here on are of commands that were stopped."""
+_NO_MEMORY = "error IRL090: internal error: the memory that this process may use is used up"
+"""For a moment at which no more than this can be said."""
+_LIBRARIES = ("OPENBLAS_NUM", "OMP_NUM", "MKL_NUM", "BLIS_NUM", "VECLIB_MAXIMUM")
+"""How variables for the number of threads of linear algebra begin: whose OpenBLAS is, and others'."""
 _EXAMPLE = """\
 examples:
   irlx demo
@@ -111,6 +116,16 @@ def _carried_out(arguments: Sequence[str] | None) -> int:
 
 def _told(error: Exception) -> int:
     """Print what went wrong; gives the exit code."""
+    try:
+        return _explained(error)
+    except (MemoryError, ImportError):
+        # What words messages are made of is loaded only here, and there may be no memory left for that.
+        print(_NO_MEMORY, file=sys.stderr)
+        return 2
+
+
+def _explained(error: Exception) -> int:
+    """Print what went wrong, with its place and what helps; gives the exit code."""
     # Imported here: what prints a help has no need of messages.
     from irlx.cli.output import exit_code, print_diagnostics
     from irlx.diagnostics import IrlxError, report
@@ -149,13 +164,22 @@ def _has_folder() -> bool:
     return True
 
 
+def use_one_thread() -> None:
+    """Let libraries of linear algebra that are loaded from now on use one thread.
+
+    Of a robot with many joints beside many obstacles several threads would give other last bits. Matrices are
+    small: threads would only wait for each other, the more so on a busy machine.
+    """
+    for library in _LIBRARIES:
+        os.environ[f"{library}_THREADS"] = "1"
+
+
 def entry_point() -> None:
     """Console entry: `irlx`."""
-    # Matrices here are small: threads of the linear algebra would only wait for each other, the more so on a
-    # busy machine. Set before anything loads it; who asks for more threads gets them.
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    use_one_thread()
     heed_signals()
     take_channels()
+    expect_little_memory()
     try:
         code = main()
     finally:

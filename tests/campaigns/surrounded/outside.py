@@ -16,6 +16,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from surrounded.place import Place, Trial, told
 
+HUNG = -999
+"""What stands for the exit code of a command that has no end."""
 IRLX = (sys.executable, "-m", "irlx")
 
 
@@ -30,16 +32,23 @@ def environment(more: Mapping[str, str | None] | None = None) -> dict[str, str]:
 
 
 def done(
-    arguments: Sequence[str],
+    arguments: Sequence[str | bytes],
     more: Mapping[str, str | None] | None = None,
     python: Sequence[str] = (),
     prepare: Callable[[], None] | None = None,
+    before: Sequence[str] = (),
     **options: object,
 ) -> subprocess.CompletedProcess[bytes]:
-    """A command that has ended; `prepare` is called in its process before it begins."""
-    given = {"stdin": subprocess.DEVNULL, "capture_output": True, "timeout": 300, **options}
-    call = [sys.executable, *python, "-m", "irlx", *arguments]
-    return subprocess.run(call, env=environment(more), preexec_fn=prepare, check=False, **given)
+    """A command that has ended, with the code HUNG where it did not.
+
+    `before` are words of another command that carries it out; `prepare` is called in its process first.
+    """
+    given = {"stdin": subprocess.DEVNULL, "capture_output": True, "timeout": 900, **options}
+    call = [*before, sys.executable, *python, "-m", "irlx", *arguments]
+    try:
+        return subprocess.run(call, env=environment(more), preexec_fn=prepare, check=False, **given)
+    except subprocess.TimeoutExpired as late:
+        return subprocess.CompletedProcess(call, HUNG, late.stdout or b"", late.stderr or b"")
 
 
 def _hears(process: subprocess.Popen[bytes]) -> bool:
@@ -135,7 +144,8 @@ def memory(place: Place, dice: random.Random, count: int) -> Iterator[Trial]:
         # OpenBLAS ends the process itself where it gets no memory; Python where it cannot even begin.
         own = "OpenBLAS" in said or "Python runtime state" in said or "irlx" not in said
         trial = Trial(f"{most / 1e6:.0f} MB", ended.returncode)
-        trial.faults = [] if own else told(ended.returncode, said, (0, 2), memory=True)
+        hangs = ended.returncode == HUNG
+        trial.faults = [] if own and not hangs else told(ended.returncode, said, (0, 2), memory=True)
         for ending in (".npz", ".html"):
             trial.faults += place.faults(f"out{ending}", None, leftovers=ended.returncode < 0)
         yield trial

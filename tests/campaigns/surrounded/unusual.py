@@ -19,6 +19,8 @@ from surrounded.place import STREAMS, Place, Trial, digest, told
 
 LOCALES = (("tr_TR", "UTF-8"), ("tr_TR", "ISO-8859-9"), ("de_DE", "UTF-8"), ("ja_JP", "EUC-JP"))
 ASKED = [word for ending in STREAMS for word in ("-o", f"out{ending}")]
+WRITTEN = (".npz", ".irdata", ".html")
+"""What every program of the repository is written to."""
 ROOT = Path(__file__).resolve().parents[3]
 
 
@@ -119,11 +121,7 @@ def inputs(place: Place, dice: random.Random, count: int) -> Iterator[Trial]:
         path = place.folder / f"strange{ending}"
         with made[kind](path):
             command = [word.format(path.name) for word in commands[ending]]
-            try:
-                ended = done(command, prepare=limited(resource.RLIMIT_AS, 3 << 30), timeout=120)
-            except subprocess.TimeoutExpired:
-                yield Trial(f"{kind} as {path.name}", "none", ["it hangs"])
-                continue
+            ended = done(command, prepare=limited(resource.RLIMIT_AS, 3 << 30), timeout=120)
         said = (ended.stdout + ended.stderr).decode(errors="replace")
         yield Trial(f"{kind} as {path.name}", ended.returncode, told(ended.returncode, said, (1, 2)))
 
@@ -264,33 +262,44 @@ def programs(place: Place, dice: random.Random, count: int) -> Iterator[Trial]:
             or "MODULE " in inner.read_text()[:200]
         ):
             continue
-        variants = (
-            ({"PYTHONHASHSEED": "0", "OPENBLAS_NUM_THREADS": "1"}, place.folder, inner),
-            (
-                {"PYTHONHASHSEED": "1", "OPENBLAS_NUM_THREADS": "2", "OMP_NUM_THREADS": "4"},
-                inner.parent,
-                Path(inner.name),
-            ),
-        )
-        ended = [
-            done(["run", str(program), *_asked(place.folder, number)], more, cwd=cwd)
-            for number, (more, cwd, program) in enumerate(variants)
-        ]
-        trial = Trial(str(path.relative_to(ROOT)), ended[0].returncode)
-        said = [_squeezed(one.stdout.decode().replace(f"{n}.", "X.")) for n, one in enumerate(ended)]
-        if said[0] != said[1] or ended[0].stderr != ended[1].stderr:
-            trial.faults.append(f"other words: {said}")
-        for ending in (".npz", ".irdata", ".html"):
-            if digest(place.folder / f"0{ending}") != digest(place.folder / f"1{ending}"):
-                trial.faults.append(f"another {ending}")
-        if ended[0].returncode == 0:
-            trial.faults += _streamed_otherwise(inner, place.folder / "0.npz")
-        yield trial
+        yield _in_two_settings(place.folder, inner, str(path.relative_to(ROOT)))
 
 
-def _asked(folder: Path, number: int) -> list[str]:
-    outputs = [str(folder / f"{number}{ending}") for ending in (".npz", ".irdata", ".html")]
-    return ["-o", outputs[0], "-o", outputs[1], "--html", outputs[2]]
+def _in_two_settings(folder: Path, program: Path, what: str) -> Trial:
+    """One program, called from afar with one thread, and beside it with several and another hash seed."""
+    variants = (
+        ("first", {"PYTHONHASHSEED": "0", "OPENBLAS_NUM_THREADS": "1"}, folder, program),
+        (
+            "other",
+            {"PYTHONHASHSEED": "1", "OPENBLAS_NUM_THREADS": "2", "OMP_NUM_THREADS": "4"},
+            program.parent,
+            Path(program.name),
+        ),
+    )
+    ended, said = [], []
+    for name, more, cwd, called in variants:
+        shutil.rmtree(folder / name, ignore_errors=True)
+        (folder / name).mkdir()
+        outputs = [str(folder / name / f"out{ending}") for ending in WRITTEN]
+        asked = ["-o", outputs[0], "-o", outputs[1], "--html", outputs[2]]
+        done_so = done(["run", str(called), *asked], more, cwd=cwd)
+        ended.append(done_so)
+        words = (done_so.stdout + done_so.stderr).decode(errors="replace")
+        # What is not asked to be the same: the way to the program and to the files.
+        said.append(_squeezed(words.replace(f"{folder / name}/", "").replace(f"{program.parent}/", "")))
+    trial = Trial(what, ended[0].returncode)
+    for one, words in zip(ended, said, strict=True):
+        trial.faults += told(one.returncode, words, (0, 1))
+    if ended[0].returncode != ended[1].returncode:
+        trial.faults.append(f"other exit codes: {[one.returncode for one in ended]}")
+    if said[0] != said[1]:
+        trial.faults.append(f"other words: {said}")
+    for ending in WRITTEN:
+        if digest(folder / f"first/out{ending}") != digest(folder / f"other/out{ending}"):
+            trial.faults.append(f"another {ending}")
+    if ended[0].returncode == 0:
+        trial.faults += _streamed_otherwise(program, folder / "first/out.npz")
+    return trial
 
 
 def _streamed_otherwise(program: Path, written: Path) -> list[str]:

@@ -19,6 +19,7 @@ from irlx.report.events import LimitActive, Slowed
 from irlx.report.replay.events import replay_events
 from irlx.report.replay.frames import Columns
 from irlx.report.replay.gathering import Gathered
+from irlx.report.replay.names import words_of
 from irlx.report.replay.scenery import Scenery
 from irlx.report.replay.source import ReplaySource
 from irlx.report.singularity import smallest_singular_values
@@ -62,7 +63,8 @@ def replay_json(replay: Replay, small: bool = False) -> tuple[bytes, tuple[Diagn
 
 def _told(diagnostic: Diagnostic) -> str:
     """Lines of a diagnostic: what, and what would help."""
-    return f"{diagnostic}\n  help: {diagnostic.help}" if diagnostic.help else str(diagnostic)
+    words = words_of(diagnostic)
+    return f"{words}\n  help: {diagnostic.help}" if diagnostic.help else words
 
 
 def _head(replay: Replay, small: bool) -> Plain:

@@ -16,6 +16,7 @@ from irlx.diagnostics import Diagnostic
 from irlx.report.events import LimitActive, Slowed
 from irlx.report.message import Message
 from irlx.report.replay.gathering import MOST_SHOWN, Gathered
+from irlx.report.replay.names import words_of
 from irlx.report.signals import signals_of
 from irlx.report.terminal import PER, joint_value
 from irlx.report.unreached import unreached_time
@@ -144,7 +145,7 @@ def _waits(found: Gathered) -> Iterator[Event]:
 
 
 def _stop(last: int, header: StreamHeader, error: Diagnostic) -> Event:
-    words, time = str(error), unreached_time(error, last, header.dt)
+    words, time = words_of(error), unreached_time(error, last, header.dt)
     if time is not None:
         rest = last * header.dt
         words += f"; the robot rests at {rest:.6g} s, what was planned up to {time:.6g} s is left out"
