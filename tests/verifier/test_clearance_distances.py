@@ -63,8 +63,8 @@ def by_coal(first, second, positions, rotations):
 @pytest.mark.parametrize(
     ("kind", "other"),
     [
-        # Each pair one way round by default.
-        pytest.param(kind, other, marks=pytest.mark.slow if place < before else ())
+        # Every other pair by default, one way round.
+        pytest.param(kind, other, marks=pytest.mark.slow if place < before or (place + before) % 2 else ())
         for before, kind in enumerate(KINDS)
         for place, other in enumerate(KINDS)
     ],
@@ -92,10 +92,12 @@ def test_distances_are_those_of_coal(kind, other, turn):
 @pytest.mark.parametrize(
     ("kind", "other"),
     [
-        # Each pair one way round by default.
-        pytest.param(kind, other, marks=pytest.mark.slow if other in DEEP[:before] else ())
+        # Every other pair by default, one way round.
+        pytest.param(
+            kind, other, marks=pytest.mark.slow if other in DEEP[:before] or (before + place) % 2 else ()
+        )
         for before, kind in enumerate(DEEP)
-        for other in KINDS
+        for place, other in enumerate(KINDS)
     ],
 )
 def test_overlapping_bodies_are_parted_by_no_shorter_way(kind, other):
@@ -113,6 +115,25 @@ def test_overlapping_bodies_are_parted_by_no_shorter_way(kind, other):
         assert np.max(slab(first, second, *here, around)) <= found.upper[row] + 1e-9
     parted = positions[deep] + (1e-7 - found.upper[deep])[:, None] * found.direction[deep]
     assert np.all(distances(first, second, parted, rotations[deep]).upper > 0.0)
+
+
+@pytest.mark.req("STR-06")
+@pytest.mark.parametrize(("kind", "other"), [("box", "cone"), ("cylinder", "capsule")])
+def test_distances_beyond_enough_are_bracketed_roughly_others_as_ever(kind, other):
+    rng = np.random.default_rng([SEED, 8, KINDS.index(kind)])
+    first, second = (body_of(drawn(name, rng)[0]) for name in (kind, other))
+    positions, rotations = poses(200, rng)
+    exact = distances(first, second, positions, rotations)
+    enough = np.quantile(exact.upper, rng.uniform(0.0, 1.0, 200))
+    rough = distances(first, second, positions, rotations, enough=enough)
+    beyond = exact.lower > enough
+    assert np.all(rough.lower <= exact.upper + 1e-12)
+    assert np.all(rough.upper >= exact.lower - 1e-12)
+    assert np.all(rough.lower[beyond] > enough[beyond])
+    assert np.array_equal(rough.upper[~beyond], exact.upper[~beyond])
+    assert np.array_equal(rough.lower[~beyond], exact.lower[~beyond])
+    # It is what ends the search early.
+    assert np.mean(rough.upper[beyond] - rough.lower[beyond] > 1e-6) > 0.5
 
 
 def contains(shape, point) -> float:

@@ -47,6 +47,9 @@ BLOCK_TYPES: dict[str, type[Block]] = {
 _ONCE_ALONE = {ArcCourse}
 """Parts that stood where they stand before there was anything else: streams of then do not name them."""
 
+_AS_THEY_ARE = {float, int, str, bool, type(None)}
+"""Values that are plain already, which most are."""
+
 _NOT_FINITE = {"inf", "-inf", "nan"}
 
 
@@ -88,6 +91,10 @@ def _fields_of(value: Any) -> dict[str, Any]:
 
 
 def _encode(value: Any, hint: Any) -> Any:
+    if type(value) in _AS_THEY_ARE:
+        return value
+    if type(value) is tuple and all(type(item) is float for item in value):
+        return list(value)
     if is_dataclass(value):
         tag = {"type": type(value).__name__} if _is_choice(hint) else {}
         return {**tag, **_fields_of(value)}
@@ -114,13 +121,30 @@ def _hints(kind: Any) -> dict[str, Any]:
     return get_type_hints(kind)
 
 
+@cache
 def _alternatives(hint: Any) -> tuple[Any, ...]:
     return get_args(hint) if get_origin(hint) in {Union, types.UnionType} else (hint,)
 
 
+@cache
 def _is_choice(hint: Any) -> bool:
     """Whether more than one dataclass may stand here, so that the plain form must name it."""
     return sum(is_dataclass(option) for option in _alternatives(hint)) > 1
+
+
+@cache
+def _may_miss(kind: Any) -> dict[str, bool]:
+    """Whether a field has a default, by its name."""
+    return {field.name: field.default is not MISSING for field in fields(kind)}
+
+
+@cache
+def _asked(hint: Any) -> tuple[bool, tuple[Any, ...], tuple[Any, ...] | None]:
+    """Whether None may stand here, what else, and the items where that is a tuple."""
+    every = _alternatives(hint)
+    options = tuple(option for option in every if option is not type(None))
+    items = get_args(options[0]) if get_origin(options[0]) is tuple else None
+    return len(options) < len(every), options, items
 
 
 def _parts(hint: Any, count: int) -> tuple[Any, ...]:
@@ -133,7 +157,7 @@ def _dataclass_from(kind: Any, plain: object, where: str) -> Any:
     if not isinstance(plain, dict):
         raise BlockFormError(f"{where or 'block'}: needs a {kind.__name__}, found {plain!r}")
     hints = _hints(kind)
-    optional = {field.name: field.default is not MISSING for field in fields(kind)}
+    optional = _may_miss(kind)
     for key in plain:
         if key not in optional:
             raise BlockFormError(f"{_join(where, str(key))}: a {kind.__name__} has no such field")
@@ -154,15 +178,14 @@ def _join(where: str, name: str) -> str:
 
 
 def _decode(hint: Any, value: object, where: str) -> Any:
-    options = _alternatives(hint)
-    if value is None and type(None) in options:
+    may_be_none, options, items = _asked(hint)
+    if value is None and may_be_none:
         return None
-    options = tuple(option for option in options if option is not type(None))
     if len(options) > 1:
         return _decode_choice(options, value, where)
     option = options[0]
-    if get_origin(option) is tuple:
-        return _decode_tuple(get_args(option), value, where)
+    if items is not None:
+        return _decode_tuple(items, value, where)
     if is_dataclass(option):
         return _dataclass_from(option, value, where)
     if issubclass(option, Enum):
@@ -191,6 +214,11 @@ def _decode_tuple(items: tuple[Any, ...], value: object, where: str) -> tuple[An
         items = (items[0],) * len(value)
     if len(items) != len(value):
         raise BlockFormError(f"{where}: needs {len(items)} values, found {len(value)}")
+    if items[:1] == (float,) and all(
+        item is float and type(part) is float for item, part in zip(items, value, strict=True)
+    ):
+        # Most of what a stream holds.
+        return tuple(value)
     return tuple(
         _decode(item, part, f"{where}.{number}")
         for number, (item, part) in enumerate(zip(items, value, strict=True), 1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -155,7 +156,7 @@ class _Corner:
             return Lost("the moves are too short for their ticks")
         if self._turns_back(most):
             return Lost("the path turns back on itself")
-        for cut in sorted(self._cuts(most), key=lambda cut: cut.saved, reverse=True):
+        for cut in self._cuts(most):
             found = self._judged(cut)
             if found is not None:
                 return self._crossing(self._shortened(found))
@@ -173,19 +174,20 @@ class _Corner:
         return found
 
     def _cuts(self, most: tuple[int, int]) -> Iterator[_Cut]:
-        """Ways that keep the joints' limits."""
+        """Ways that keep the joints' limits, those that save most first, each made when it is asked for."""
+        asked = []
         for shares in product(_PARTS, repeat=2):
             left, joined = (
                 max(LEAST_TICKS, round(share * ticks)) for share, ticks in zip(shares, most, strict=True)
             )
-            more = _SLOWER
-            for ticks in sorted({max(2, round(part * (left + joined))) for part in _TIMES}):
-                found = self._cut(left, joined, ticks)
-                if found is not None:
-                    yield found
-                    more -= 1
-                if not more:
-                    break
+            every = sorted({max(2, round(part * (left + joined))) for part in _TIMES})
+            asked += [(shares, left, joined, ticks) for ticks in every]
+        found_of: Counter[tuple[float, ...]] = Counter()
+        for shares, left, joined, ticks in sorted(asked, key=lambda one: one[3] - one[1] - one[2]):
+            found = None if found_of[shares] == _SLOWER else self._cut(left, joined, ticks)
+            if found is not None:
+                found_of[shares] += 1
+                yield found
 
     def _cut(self, left: int, joined: int, ticks: int) -> _Cut | None:
         """The way of so many ticks, None where the joints cannot go it."""

@@ -35,7 +35,7 @@ def capped_distances(meeting: Meeting, rows: Integers, cap: Floats) -> Floats:
     found: Floats = cap.copy()
     near = np.flatnonzero(~(meeting.least[rows] >= cap))
     if near.size:
-        found[near] = np.minimum(cap[near], _measured(meeting, rows[near]).upper)
+        found[near] = np.minimum(cap[near], _measured(meeting, rows[near], cap[near]).upper)
     return found
 
 
@@ -78,8 +78,9 @@ class _Search:
         return which[np.logical_not(keeps)]
 
     def measure(self, places: Integers, start: Floats | None = None) -> Gaps:
-        """Measure rows by their places."""
-        found = _measured(self._meeting, self._rows[places], start)
+        """Measure rows by their places, roughly what cannot matter."""
+        enough = self._allowed[places] - min(self._tolerance, self._worst)
+        found = _measured(self._meeting, self._rows[places], enough, start)
         self._found.append((places, found.upper))
         beyond = self._allowed[places] - found.upper
         self._worst = max(self._worst, float(np.max(beyond)))
@@ -139,14 +140,14 @@ def _every(count: int, apart: int) -> tuple[Integers, Integers]:
     return place // apart, np.minimum(place[::apart] + apart // 2, count - 1)
 
 
-def _measured(meeting: Meeting, rows: Integers, start: Floats | None = None) -> Gaps:
-    """Distances in rows; no number where the poses are none."""
+def _measured(meeting: Meeting, rows: Integers, enough: Floats, start: Floats | None = None) -> Gaps:
+    """Distances in rows, roughly those beyond `enough` (M,); no number where the poses are none."""
     positions, rotations = meeting.at(rows)
     whole = np.asarray(np.isfinite(positions).all(axis=1) & np.isfinite(rotations).all(axis=(1, 2)))
     if whole.all():
-        return distances(meeting.first, meeting.second, positions, rotations, start)
+        return distances(meeting.first, meeting.second, positions, rotations, start, enough)
     found = Gaps(np.full(len(rows), np.nan), np.full(len(rows), np.nan), np.zeros((len(rows), 3)))
-    parts = distances(meeting.first, meeting.second, positions[whole], rotations[whole])
+    parts = distances(meeting.first, meeting.second, positions[whole], rotations[whole], enough=enough[whole])
     for all_of, part in zip(found, parts, strict=True):
         all_of[whole] = part
     return found

@@ -13,11 +13,17 @@ from irlx.verifier.distances.separation import Gaps, separation
 
 
 def distances(
-    first: Body, second: SolidBody, positions: Floats, rotations: Floats, start: Floats | None = None
+    first: Body,
+    second: SolidBody,
+    positions: Floats,
+    rotations: Floats,
+    start: Floats | None = None,
+    enough: Floats | None = None,
 ) -> Gaps:
     """Brackets of the distances between `first`, at the origin, and `second` at M poses in its frame.
 
-    Positions (M, 3) m, rotations (M, 3, 3); `start` (M, 3): directions to begin the search with. Below 0 the
+    Positions (M, 3) m, rotations (M, 3, 3); `start` (M, 3): directions to begin the search with. Brackets of
+    distances that are beyond `enough` (M,), m, may be wide, up to half of that excess. Below 0 the
     bodies overlap: convex ones as deep as the least shift that parts them, a mesh as deep as the worst of its
     triangles does, and where one is wholly inside the other as deep as their surfaces are apart.
     """
@@ -26,9 +32,9 @@ def distances(
         above = positions[:, 2] - second.height(backward(rotations, down))
         return Gaps(above, above, -down)
     if isinstance(first, ConvexBody) and isinstance(second, ConvexBody):
-        found = separation(
-            Resting(first.core, len(positions)), Placed(second.core, positions, rotations), start
-        )
+        resting = Resting(first.core, len(positions))
+        beyond = None if enough is None else enough + (first.radius + second.radius)
+        found = separation(resting, Placed(second.core, positions, rotations), start, enough=beyond)
     else:
         found = nearest_triangles(first, second, positions, rotations)
         inside = _one_inside(first, second, positions, rotations, found.upper)

@@ -15,6 +15,9 @@ from irlx.verifier.distances.simplex import nearest_to_origin
 CLOSE = 2e-12
 """Width of the bracket at which the search ends, m, for bodies near each other."""
 
+ROUGHLY = 0.5
+"""Width of the bracket at which the search ends, as a share of how far a distance is beyond `enough`."""
+
 _VAGUE = 1e-10
 _MOST_STEPS = 200
 
@@ -32,15 +35,23 @@ class Gaps(NamedTuple):
     direction: Floats
 
 
-def separation(first: Convex, second: Convex, start: Floats | None = None, thorough: bool = True) -> Gaps:
+def separation(
+    first: Convex,
+    second: Convex,
+    start: Floats | None = None,
+    thorough: bool = True,
+    enough: Floats | None = None,
+) -> Gaps:
     """Distances between M pairs of convex sets by the algorithm of Gilbert, Johnson and Keerthi (1988).
 
     `start` (M, 3): directions from the first to the second to begin with, from centre to centre by default.
+    Of a distance beyond `enough` (M,) a bracket is enough that is no wider than
+    `ROUGHLY` times the excess.
     The set of differences of points of both has its point nearest to the origin at the distance: simplices of
     its support points close in on that. Overlapping sets are told by a simplex around the origin, and their
     depth by `overlap_depth`, `thorough` or not.
     """
-    search = _Search(first, second, start)
+    search = _Search(first, second, start, enough)
     while search.active.size and search.steps < _MOST_STEPS:
         search.step()
     return search.gaps(thorough)
@@ -49,8 +60,8 @@ def separation(first: Convex, second: Convex, start: Floats | None = None, thoro
 class _Search:
     """All pairs at once; `active` holds the indices of those that are not done."""
 
-    def __init__(self, first: Convex, second: Convex, start: Floats | None) -> None:
-        self.first, self.second = first, second
+    def __init__(self, first: Convex, second: Convex, start: Floats | None, enough: Floats | None) -> None:
+        self.first, self.second, self._enough = first, second, enough
         outward = unit(second.centres - first.centres if start is None else start)
         outward[~outward.any(axis=1)] = (1.0, 0.0, 0.0)
         count = len(outward)
@@ -61,6 +72,7 @@ class _Search:
         self.direction = outward
         self.upper = np.linalg.norm(corner, axis=1)
         self.overlaps: NDArray[np.bool_] = np.zeros(count, dtype=np.bool_)
+        self._rough: NDArray[np.bool_] = np.zeros(count, dtype=np.bool_)
         # Of the active pairs: sets, simplex, nearest point.
         self._near = first, second
         self._point = corner
@@ -80,7 +92,12 @@ class _Search:
         better = lower > self.lower[self.active]
         changed = self.active[better]
         self.lower[changed], self.direction[changed] = lower[better], outward[better]
-        near = size - self.lower[self.active] <= CLOSE + 4e-15 * np.abs(corner).max(axis=1)
+        known = self.lower[self.active]
+        near = size - known <= CLOSE + 4e-15 * np.abs(corner).max(axis=1)
+        if self._enough is not None:
+            rough = size - known <= ROUGHLY * (known - self._enough[self.active])
+            self._rough[self.active[rough]] = True
+            near |= rough
         going = np.flatnonzero(~near & (size > 0.0))
         found = nearest_to_origin(corner[going], self._corners[going], self._held[going])
         length = np.linalg.norm(found.points, axis=1)
@@ -108,7 +125,7 @@ class _Search:
         # Where a point of the differences is the origin itself the sets touch, or overlap.
         touch = self.overlaps | (self.upper <= CLOSE)
         # Points too near each other for their difference to have a direction: faces and edges have one.
-        vague = ~touch & (self.upper - self.lower > _VAGUE)
+        vague = ~touch & ~self._rough & (self.upper - self.lower > _VAGUE)
         for which, full in ((touch, thorough), (vague, False)):
             pairs = np.flatnonzero(which)
             if not pairs.size:

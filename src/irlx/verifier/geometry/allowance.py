@@ -24,6 +24,9 @@ MET = 1e-10
 GRID, HOLLOWS, SECTIONS, GOLDEN = 512, 3, 70, 0.5 * (5.0**0.5 - 1.0)
 """.. among so many places, from so many of them on, by so many golden sections."""
 
+TOGETHER = 20_000
+"""Places times rows at which that is looked at in one go."""
+
 ASIDE = 1e-8
 """Way, m, by which the change of what is beyond the bands is told."""
 
@@ -124,24 +127,26 @@ class Allowance:
         """
 
         def off(places: Floats) -> Floats:
-            return np.asarray(np.linalg.norm(self._left(way, places, positions, rotations), axis=1))
+            """Sizes of what is left, (..), at places (.., R): many at once cost hardly more than one."""
+            row = np.broadcast_to(np.arange(len(along)), places.shape).reshape(-1)
+            left = self._left(way, places.reshape(-1), positions[row], rotations[row])
+            return np.asarray(np.linalg.norm(left, axis=1).reshape(places.shape))
 
         grid = np.linspace(0.0, way.reach, GRID + 1)
-        values = np.pad(
-            [off(np.full(len(along), place)) for place in grid], ((1, 1), (0, 0)), constant_values=inf
-        )
+        parts = np.array_split(grid, min(GRID, 1 + GRID * len(along) // TOGETHER))
+        found = [off(np.repeat(part[:, None], len(along), axis=1)) for part in parts]
+        values = np.pad(np.concatenate(found), ((1, 1), (0, 0)), constant_values=inf)
         hollow = (values[1:-1] <= values[:-2]) & (values[1:-1] <= values[2:])
         order = np.argsort(np.where(hollow, values[1:-1], inf), axis=0)[:HOLLOWS]
+        low, high = (np.clip(grid[order] + side / GRID * way.reach, 0.0, way.reach) for side in (-1.0, 1.0))
+        for _ in range(SECTIONS):
+            inner = np.stack([high - GOLDEN * (high - low), low + GOLDEN * (high - low)])
+            before = np.less(*off(inner))
+            low, high = np.where(before, low, inner[0]), np.where(before, inner[1], high)
         best, least = along, off(along)
-        for start in grid[order]:
-            low, high = (np.clip(start + side / GRID * way.reach, 0.0, way.reach) for side in (-1.0, 1.0))
-            for _ in range(SECTIONS):
-                inner = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-                before = off(inner[0]) < off(inner[1])
-                low, high = np.where(before, low, inner[0]), np.where(before, inner[1], high)
-            found = 0.5 * (low + high)
-            value = off(found)
-            best, least = np.where(value < least, found, best), np.minimum(value, least)
+        middles = 0.5 * (low + high)
+        for place, value in zip(middles, off(middles), strict=True):
+            best, least = np.where(value < least, place, best), np.minimum(value, least)
         return np.asarray(best)
 
     def _left(self, way: Way, along: Floats, positions: Floats, rotations: Floats) -> Floats:
