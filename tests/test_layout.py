@@ -67,6 +67,9 @@ def modules_in(part):
     return [path for path in MODULES if path.relative_to(SOURCE).parts[0] == part]
 
 
+STATEMENTS = ast.stmt | ast.excepthandler | ast.match_case
+
+
 @cache
 def text_of(path):
     return path.read_text(encoding="utf-8")
@@ -74,7 +77,11 @@ def text_of(path):
 
 @cache
 def nodes_of(path):
-    return tuple(ast.walk(ast.parse(text_of(path))))
+    """A module and its statements, those within others too: expressions, most of a tree, tell nothing."""
+    found = [ast.parse(text_of(path))]
+    for node in found:
+        found += [child for child in ast.iter_child_nodes(node) if isinstance(child, STATEMENTS)]
+    return tuple(found)
 
 
 def imported_modules(path):

@@ -51,7 +51,7 @@ def outcome(folder: Path, seed: int, kinds: tuple[str, ...] = KINDS) -> tuple[st
 
 
 @pytest.mark.req("QA-05")
-@pytest.mark.parametrize("seed", first(4, QUICK))
+@pytest.mark.parametrize("seed", first(2, QUICK))
 def test_drawn_programs(tmp_path, seed) -> None:
     outcome(tmp_path, seed)
 
@@ -71,12 +71,13 @@ def joined(tmp_path_factory) -> Callable[[int], int]:
 
 
 @pytest.mark.req("MOT-06")
-@pytest.mark.parametrize("seed", first(4, QUICK))
+@pytest.mark.parametrize("seed", first(2, QUICK))
 def test_drawn_programs_of_ptps_beside_paths(joined, seed) -> None:
     assert joined(seed) >= 0
 
 
 @pytest.mark.req("MOT-06")
+@pytest.mark.slow
 def test_some_of_them_are_joined(joined) -> None:
     assert sum(joined(seed) for seed in list(QUICK)[:6]) > 1
 

@@ -17,6 +17,7 @@ import irlx
 from irlx.cell.load import load_cell
 from irlx.cell.robot_data import robot_data_folder
 from kept_runs import kept_report, kept_run
+from long_run import first
 from reference_motion import DURATION, RADIUS, reference_motion
 from stream_judge import Written, excess, on_circle, on_line, tool_poses
 
@@ -77,6 +78,7 @@ def test_panda_by_its_own_limits_takes_the_programmed_time(tmp_path, tick: float
     assert run.summary.slowed == ()
 
 
+@pytest.mark.slow
 @needs_panda
 @ticks
 def test_panda_joint_1_is_absorbed_by_the_redundancy(tmp_path, tick: float) -> None:
@@ -113,7 +115,7 @@ SLOWED = [
 
 
 @slow_ticks
-@pytest.mark.parametrize(("robot", "speed"), [ABSORBED[0], ABSORBED[2], *map(in_long_run, ABSORBED[1::2])])
+@pytest.mark.parametrize(("robot", "speed"), [ABSORBED[0], *map(in_long_run, ABSORBED[1:])])
 def test_a_limit_that_the_redundancy_absorbs_costs_a_thousandth(
     tmp_path, robot: str, speed, tick: float
 ) -> None:
@@ -128,7 +130,7 @@ def test_a_limit_that_the_redundancy_absorbs_costs_a_thousandth(
 @slow_ticks
 @pytest.mark.parametrize(
     ("robot", "speed", "acceleration", "achieved"),
-    [case if case in (SLOWED[2], SLOWED[4]) else in_long_run(case) for case in SLOWED],
+    [case if case == SLOWED[2] else in_long_run(case) for case in SLOWED],
 )
 def test_a_limit_that_costs_time_costs_no_more_than_achieved(
     tmp_path, robot: str, speed, acceleration, achieved: float, tick: float
@@ -141,7 +143,7 @@ def test_a_limit_that_costs_time_costs_no_more_than_achieved(
 # ---- koch11: the square of the monograph
 
 
-@pytest.mark.parametrize("tick", [pytest.param(10, marks=pytest.mark.slow), 20, 50, 100])
+@pytest.mark.parametrize("tick", first(1, [50, 10, 20, 100]))
 def test_koch11_square_keeps_350_deg_per_s2_in_the_programmed_time(tmp_path, tick: int) -> None:
     folder = Path(__file__).parents[1] / "programs" / "koch"
     text = (folder / "square.toml").read_text(encoding="utf-8")
@@ -217,9 +219,7 @@ def test_wrist_path_past_a_singular_posture_takes_the_programmed_time(tmp_path, 
 
 @needs_panda
 @slow_ticks
-@pytest.mark.parametrize(
-    ("joint", "share"), [(3, 0.8), in_long_run((5, 0.8)), in_long_run((6, 0.5)), (7, 0.5)]
-)
+@pytest.mark.parametrize(("joint", "share"), [(3, 0.8), *map(in_long_run, ((5, 0.8), (6, 0.5), (7, 0.5)))])
 def test_wrist_path_meets_a_position_limit_on_the_way(
     tmp_path, joint: int, share: float, tick: float
 ) -> None:

@@ -11,7 +11,7 @@ from irlx.interpreter.rotations import CONVENTIONS, FUNCTIONS
 
 pytestmark = [pytest.mark.req("LANG-32"), pytest.mark.req("LANG-33"), pytest.mark.req("LANG-35")]
 
-CASES = 10_000
+CASES = 2_000
 SMALL = 1e-12
 
 

@@ -14,7 +14,7 @@ from long_run import portions
 from reference_evaluator.comparison import compared, judged
 
 CORPUS = sorted((Path(__file__).parents[1] / "corpus" / "second_opinions").glob("*.irl"))
-QUICK = range(60)
+QUICK = range(30)
 
 pytestmark = [pytest.mark.req("LANG-11"), pytest.mark.req("LANG-30"), pytest.mark.req("LANG-40")]
 

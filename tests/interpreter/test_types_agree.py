@@ -16,6 +16,7 @@ from irlx.language.analysis import analyse
 from irlx.language.checking.check import type_check
 from irlx.language.checking.type_forms import Joints, joints_of
 from irlx.language.source import source_text
+from long_run import first_rows
 
 DECLARATIONS = """TYPE RECORD REAL: a; ENDRECORD = one; RECORD INT: n; POSITION: p; ENDRECORD = two;
 RECORD REAL: a1.max, a2.max; ENDRECORD = dotted; RECORD one: a1; REAL: a1.s.max; ENDRECORD = mixed;
@@ -229,7 +230,7 @@ def compared(judge, expression, expected):
 @pytest.mark.req("LANG-20")
 @pytest.mark.req("LANG-24")
 @pytest.mark.req("LANG-30")
-@pytest.mark.parametrize(("seed", "sane"), [(1, 0.0), (2, 0.5), (3, 0.9), (4, 1.0)])
+@pytest.mark.parametrize(("seed", "sane"), first_rows(2, [(2, 0.5), (4, 1.0), (1, 0.0), (3, 0.9)]))
 def test_random_expressions(judge, seed, sane):
     expressions = Written(seed, sane)
     count = 0

@@ -59,7 +59,7 @@ def programs():
 
 @pytest.fixture(scope="module")
 def short_programs():
-    return [long_program(300, seed).splitlines() for seed in range(2)]
+    return [long_program(210, seed).splitlines() for seed in range(2)]
 
 
 def test_the_programs_are_sound(programs):

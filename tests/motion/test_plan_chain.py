@@ -16,6 +16,7 @@ from irlx.motion.line import Line
 from irlx.motion.plan_chain import PlannedChain, plan_chain
 from irlx.motion.plan_path import plan_path
 from irlx.motion.trapezoid import Trapezoid
+from long_run import chequered
 
 ROTATION = Rotation.from_rotvec([0.2, -0.4, 1.1])
 START = np.array([0.5, -0.25, 1.0])
@@ -216,8 +217,9 @@ def test_the_speed_of_the_second_move_takes_over_at_the_corner(kit) -> None:
 
 
 @pytest.mark.req("MOT-03")
-@pytest.mark.parametrize("profile", list(Profile))
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(
+    ("name", "profile"), chequered([pytest.param(name, id=name) for name in NAMES], Profile)
+)
 def test_bounds_hold_by_differences(kit, name: str, profile: Profile) -> None:
     legs = [
         replace(leg, block=replace(leg.block, law=replace(leg.block.law, profile=profile)))

@@ -18,6 +18,7 @@ from irlx.transform.measures.joint_centring import JointCentring
 from irlx.transform.measures.manipulability import Manipulability
 from irlx.transform.measures.smallest_singular_value import SmallestSingularValue
 from kept_runs import kept_report, kept_run
+from long_run import first
 from machines import machine
 
 WAYS = {"arm7": (-100, 150, -60), "koch11": (-800, 500, 300)}
@@ -88,7 +89,13 @@ def added(criterion: str) -> str:
 
 ON_KOCH11 = [
     (criterion, "koch11")
-    for criterion in ("MANIPULABILITY", "SMALLEST_SINGULAR_VALUE", "JOINT_CENTRING", "DYNAMIC_MANIPULABILITY")
+    for criterion in (
+        "JOINT_BARRIER",
+        "MANIPULABILITY",
+        "SMALLEST_SINGULAR_VALUE",
+        "JOINT_CENTRING",
+        "DYNAMIC_MANIPULABILITY",
+    )
 ]
 """Criteria of which the smaller robot and two others on this one tell by default."""
 
@@ -99,7 +106,7 @@ ON_KOCH11 = [
     [
         *product(("MANIPULABILITY", "SMALLEST_SINGULAR_VALUE", "GRAVITY_TORQUE"), ("arm7",)),
         *product(("JOINT_CENTRING", "JOINT_BARRIER", "DYNAMIC_MANIPULABILITY"), ("arm7",)),
-        *product(("GRAVITY_TORQUE", "JOINT_BARRIER"), ("koch11",)),
+        ("GRAVITY_TORQUE", "koch11"),
         *(pytest.param(*case, marks=pytest.mark.slow) for case in ON_KOCH11),
     ],
 )
@@ -168,7 +175,7 @@ def test_weights_and_clauses_add_up(shop) -> None:
 
 
 @pytest.mark.req("TRF-14")
-@pytest.mark.parametrize("acceleration", [100.0, 400.0])
+@pytest.mark.parametrize("acceleration", first(1, [400.0, 100.0]))
 @pytest.mark.parametrize("name", ["arm7", pytest.param("koch11", marks=pytest.mark.slow)])
 def test_switching_in_the_midst_breaks_no_bound(name, acceleration, shop) -> None:
     """Strong criteria switched on, over, off, under tight acceleration limits; the verifier judges."""

@@ -23,6 +23,7 @@ from irlx.transform.criteria.least_motion import LeastMotion
 from irlx.transform.qp.proxqp import ProxQpSolver
 from irlx.transform.step_bounds import StepLimiter
 from irlx.transform.tick import TickSolver
+from long_run import first, first_rows
 from machines import machine
 from slow_cases import SPEEDS, WAYS, slow_limits, used
 from stream_judge import excess
@@ -30,6 +31,7 @@ from stream_judge import excess
 pytestmark = [pytest.mark.req("MOT-20"), pytest.mark.req("MOT-21")]
 
 robots = pytest.mark.parametrize("name", ["arm7", "koch11"])
+of_seven = pytest.mark.parametrize("name", first(1, ["arm7", "koch11"]))
 KINDS = ("position", "speed", "acceleration")
 
 
@@ -72,8 +74,9 @@ def test_undisturbed_motions_are_the_very_rows_of_the_walk(name: str, wide: bool
     assert len(found.q) == motion.plan.ticks
 
 
-@robots
-@pytest.mark.parametrize("dt", [0.001, 0.01])
+@pytest.mark.parametrize(
+    ("name", "dt"), first_rows(2, [("arm7", 0.001), ("koch11", 0.01), ("arm7", 0.01), ("koch11", 0.001)])
+)
 def test_disturbed_motions_are_planned_and_keep_every_promise(name: str, dt: float) -> None:
     limits = slow_limits(name, 0.5)
     found = paced(name, limits, dt)
@@ -88,7 +91,7 @@ def test_disturbed_motions_are_planned_and_keep_every_promise(name: str, dt: flo
     assert [demand.tick for demand in found.demands] == list(range(1, len(s) + 1))
 
 
-@robots
+@of_seven
 def test_what_is_lost_is_what_the_motion_takes_longer(name: str) -> None:
     found = paced(name, slow_limits(name, 0.5))
     longer = len(found.q) * 0.01 - motion_of(name, 0.01).plan.programmed.duration
@@ -96,7 +99,7 @@ def test_what_is_lost_is_what_the_motion_takes_longer(name: str) -> None:
     assert any(part.joint >= 0 and part.governor is not Governor.PROGRAM for part in found.slowings)
 
 
-@robots
+@of_seven
 def test_the_joint_that_is_blamed_runs_at_its_limit(name: str) -> None:
     """Where the clock was slowed for a joint's speed, that joint is within 1 % of it in some row there."""
     limits = slow_limits(name, 0.5)

@@ -25,6 +25,7 @@ from irlx.transform.criteria.posture import Posture
 from irlx.transform.qp.proxqp import ProxQpSolver
 from irlx.transform.step_bounds import StepLimiter
 from irlx.transform.tick import TickSolver
+from long_run import first
 from machines import machine
 from slow_cases import SPEEDS, WAYS
 
@@ -121,7 +122,7 @@ def ahead_of(number: int) -> Walk:
     return cases()[number].walk()
 
 
-@pytest.mark.parametrize("number", range(len(NAMES) * KINDS))
+@pytest.mark.parametrize("number", first(KINDS + 3, range(len(NAMES) * KINDS)))
 def test_rows_are_the_very_ones_of_single_ticks(number: int) -> None:
     ahead, singly = ahead_of(number), cases()[number].walk(TickByTick)
     assert np.all(ahead.active == singly.active)
@@ -136,7 +137,7 @@ def test_rows_are_the_very_ones_of_single_ticks(number: int) -> None:
         assert ahead.iterations == singly.iterations
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", first(1, NAMES))
 def test_a_limit_that_a_row_meets_to_the_last_bit_is_kept(name: str) -> None:
     """Whether such a row was held is a matter of rounding: then the others are the same but for that."""
     q, _ = used(name)
@@ -150,7 +151,7 @@ def test_a_limit_that_a_row_meets_to_the_last_bit_is_kept(name: str) -> None:
     np.testing.assert_allclose(ahead.q, singly.q, rtol=0, atol=1e-12)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", first(1, NAMES))
 def test_bounds_bite_in_these_cases(name: str) -> None:
     """Of the cases at least two have joints held in the middle of the way, and go on behind that."""
     walks = [ahead_of(number) for number, case in enumerate(cases()) if case.name == name]

@@ -9,6 +9,8 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from long_run import first
+
 
 def words(values) -> str:
     return " ".join(repr(float(value)) for value in values)
@@ -108,7 +110,7 @@ def make_robot(seed: int) -> RandomRobot:
     return RandomRobot(text, f"link_{links}", axes, locked, continuous)
 
 
-@pytest.fixture(params=range(25))
+@pytest.fixture(params=first(10, range(25)))
 def random_robot(request: pytest.FixtureRequest) -> RandomRobot:
     """A random robot; the parameter is its seed."""
     return make_robot(request.param)

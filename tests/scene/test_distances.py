@@ -109,7 +109,7 @@ def test_rates_against_finite_differences(name, seed):
         assert np.sum(smooth & apart) > 0.8 * np.sum(apart)
 
 
-@pytest.mark.parametrize("name", ["arm7", "koch11", "rail6"])
+@pytest.mark.parametrize("name", first(1, ["rail6", "arm7", "koch11"]))
 def test_looking_again_only_where_needed_changes_nothing(name):
     rng = np.random.default_rng(5)
     arm = robot(name, {"arm7": "tool", "koch11": "tcp"}.get(name))
@@ -276,7 +276,7 @@ def test_pairs_lose_no_more_than_their_levers_say(name):
     assert both.shape == (2, len(every))
 
 
-@pytest.mark.parametrize("name", ["arm7", "koch11"])
+@pytest.mark.parametrize("name", first(1, ["arm7", "koch11"]))
 def test_what_is_surely_clear_is_clear(name):
     """Rows ahead, and those between two looks, against a look at each of them."""
     rng = np.random.default_rng(11)

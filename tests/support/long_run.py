@@ -15,6 +15,13 @@ def first(count: int, cases: Iterable[object]) -> list[object]:
     ]
 
 
+def first_rows(count: int, rows: Iterable[tuple]) -> list[object]:
+    """The same for cases that are values of several parameters each."""
+    return [
+        row if place < count else pytest.param(*row, marks=pytest.mark.slow) for place, row in enumerate(rows)
+    ]
+
+
 def portions(seeds: range, size: int = 20) -> list[range]:
     """The seeds of a long campaign, some at a time: a test for each would cost every run its collection."""
     return [seeds[start : start + size] for start in range(0, len(seeds), size)]

@@ -11,6 +11,7 @@ from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
 from irlx.robot.urdf import read_urdf
 from irlx.transform.open_posture import open_posture
+from long_run import first_rows
 
 ROBOTS = files("irlx.cell") / "robots"
 
@@ -32,7 +33,9 @@ def two_links(first, second):
     return RobotDescription("two", "base", "tip", joints, coordinates=("x", "y"))
 
 
-@pytest.mark.parametrize(("name", "tip"), [("arm7", "tool"), ("mobile8", "tool"), ("koch11", "tcp")])
+@pytest.mark.parametrize(
+    ("name", "tip"), first_rows(2, [("arm7", "tool"), ("mobile8", "tool"), ("koch11", "tcp")])
+)
 def test_room_on_every_side(name, tip):
     robot, limits = arm(name, tip)
     kinematics = Kinematics(robot)

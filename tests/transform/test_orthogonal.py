@@ -11,6 +11,7 @@ import pytest
 from irlx.transform.compact import StepProblem, bounded_step, free_step, null_space_rows, path_step
 from irlx.transform.orthogonal import Factors, unrounded_residual
 from irlx.transform.qp.proxqp import ProxQpSolver
+from long_run import chequered
 
 pytestmark = pytest.mark.req("TRF-01")
 
@@ -60,8 +61,9 @@ def whole_system(problem: StepProblem) -> np.ndarray:
     return np.block([[hessian, -problem.jacobian.T], [problem.jacobian, np.zeros((m, m))]])
 
 
-@pytest.mark.parametrize("full", [False, True], ids=["diagonal", "full"])
-@pytest.mark.parametrize("sine", SINES)
+@pytest.mark.parametrize(
+    ("full", "sine"), chequered([pytest.param(False, id="diagonal"), pytest.param(True, id="full")], SINES)
+)
 def test_free_and_path_step_are_right_to_their_last_digits(sine: float, full: bool) -> None:
     for seed in range(8):
         n = 4 + seed

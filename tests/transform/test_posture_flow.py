@@ -12,6 +12,10 @@ from irlx.transform.qp.dual import DualSolver
 from irlx.transform.qp.proxqp import ProxQpSolver
 from long_run import first
 
+of_seven = pytest.mark.parametrize("arm", first(1, ["arm7", "koch11"]), indirect=True)
+"""For what seven joints show as well as eleven, which cost more."""
+FAR = [("arm7", 1e5), ("arm7", 1e300), ("koch11", 1e2), ("koch11", 1e5)]
+
 OPTIMAL = 1e-8
 ON_POSE = 1e-12
 
@@ -113,6 +117,7 @@ def test_six_joints_with_a_way_to_spare_use_it(arm7, seeds):
 
 
 @pytest.mark.req("TRF-15")
+@of_seven
 @pytest.mark.parametrize("seeds", first(1, [range(3), range(3, 20)]), ids=str)
 def test_a_posture_on_the_fibre_is_reached_to_the_last_bit(arm, seeds):
     free = np.ones(arm.n, dtype=bool)
@@ -149,6 +154,7 @@ def test_nothing_moves_towards_the_present_posture(arm, residue):
     assert flow.points[0].tobytes() == arm.q.tobytes()
 
 
+@of_seven
 @pytest.mark.parametrize("count", [1, pytest.param(8, marks=pytest.mark.slow)])
 def test_the_end_does_not_depend_on_the_qp_solver(arm, count):
     rng = np.random.default_rng(21)
@@ -159,6 +165,7 @@ def test_the_end_does_not_depend_on_the_qp_solver(arm, count):
 
 
 @pytest.mark.req("TRF-05")
+@of_seven
 def test_another_solver_finds_no_nearer_posture(arm):
     """SLSQP, started beside the end, comes back to it."""
     free = np.ones(arm.n, dtype=bool)
@@ -198,7 +205,11 @@ def test_narrow_limits_hold_and_are_left(arm):
         assert_good(arm, arm.q, konf, np.ones(arm.n, dtype=bool), flow, lower, upper)
 
 
-@pytest.mark.parametrize("far", [1e2, pytest.param(1e5, marks=pytest.mark.slow), 1e300])
+@pytest.mark.parametrize(
+    ("arm", "far"),
+    [("arm7", 1e2), ("koch11", 1e300), *(pytest.param(*case, marks=pytest.mark.slow) for case in FAR)],
+    indirect=["arm"],
+)
 def test_a_posture_far_beyond_everything(arm, far):
     """Only the direction counts; the flow ends, within the limits, and says what is left."""
     konf = far * np.random.default_rng(3).normal(size=arm.n)
@@ -266,7 +277,7 @@ def test_projected_gradient_is_the_slope_along_the_fibre(arm7):
 
 
 @pytest.mark.req("TRF-15")
-@pytest.mark.parametrize("side", ["lower", "upper", "both"])
+@pytest.mark.parametrize("side", first(2, ["lower", "upper", "both"]))
 def test_an_elbow_on_its_limit_holds_nobody(arm7, side):
     """With spherical shoulder and wrist the pose alone decides the elbow: the others go round it."""
     free = np.ones(7, dtype=bool)

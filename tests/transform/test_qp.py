@@ -13,6 +13,7 @@ from irlx.transform.qp.active_set import sharpen
 from irlx.transform.qp.dual import DualSolver, _lost
 from irlx.transform.qp.interval import IntervalSolver
 from irlx.transform.qp.proxqp import ProxQpSolver
+from long_run import first
 
 pytestmark = pytest.mark.req("TRF-01")
 
@@ -79,7 +80,7 @@ def assert_optimal(rows, lower, upper, solution, where: str) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("r", [2, 3, 5, 8])
+@pytest.mark.parametrize("r", first(2, [2, 8, 3, 5]))
 @pytest.mark.parametrize("make", SOLVERS)
 def test_solution_equals_daqps(make, r: int, kind: str) -> None:
     """With the same solver for all problems of a size: none may depend on the ones before."""

@@ -11,6 +11,7 @@ from irlx.promises import rounding_allowance
 from irlx.robot.limits import JointLimits
 from irlx.transform.precision import BOUND_RESERVE
 from irlx.transform.step_bounds import BoundSource, StepBounds, StepLimiter, braking_speed
+from long_run import chequered
 
 TICKS = [0.00025, 0.001, 0.01, 0.05]
 
@@ -122,8 +123,9 @@ def check(rows: np.ndarray, limits: JointLimits, dt: float, where: str) -> None:
 
 @pytest.mark.req("TRF-03")
 @pytest.mark.req("MOT-20")
-@pytest.mark.parametrize("dt", TICKS)
-@pytest.mark.parametrize("wall", ["upper", "lower"])
+@pytest.mark.parametrize(
+    ("wall", "dt"), chequered([pytest.param("upper", id="upper"), pytest.param("lower", id="lower")], TICKS)
+)
 def test_largest_steps_towards_a_limit_never_run_out_of_room(wall: str, dt: float) -> None:
     """400 joints take the largest step towards their limit, with spells of others: no empty interval."""
     rng = np.random.default_rng(int(dt * 1e6))

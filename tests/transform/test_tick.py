@@ -13,6 +13,7 @@ from irlx.transform.criteria.least_motion import LeastMotion
 from irlx.transform.criteria.posture import Posture
 from irlx.transform.tick import TickStatus
 from irlx.transform.tick_problem import TickProblem, build_tick
+from long_run import first
 
 
 def random_target(arm, rng: np.random.Generator, size: float):
@@ -60,7 +61,7 @@ CRITERIA = {
 
 
 @pytest.mark.req("TRF-01")
-@pytest.mark.parametrize("size", [1e-4, 0.01, 0.1])
+@pytest.mark.parametrize("size", first(2, [1e-4, 0.1, 0.01]))
 @pytest.mark.parametrize("make", CRITERIA.values(), ids=CRITERIA.keys())
 def test_solved_ticks_meet_pose_bounds_and_optimality(arm, make, size: float) -> None:
     """Random targets with bounds from far to tight; the ones that are solved are solved exactly."""
@@ -94,7 +95,7 @@ def test_solved_ticks_meet_pose_bounds_and_optimality(arm, make, size: float) ->
 
 
 @pytest.mark.req("TRF-01")
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", first(3, [1, 2, 3, 0, 4, 5]))
 def test_posture_equals_that_of_a_general_solver(arm, seed: int) -> None:
     """SLSQP on the nonlinear problem itself: min phi, pose met, step within bounds."""
     rng = np.random.default_rng(seed)

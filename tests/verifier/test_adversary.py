@@ -216,7 +216,10 @@ def test_a_cycle_begun_beside_its_pose(make: Make) -> None:
     ("last_speed", "moves", "new"),
     [
         ("0", "MOVE LIN p;\nMOVE LIN a;\nMOVE LIN p;", CYCLE_IDS),
-        ("[-60, 0]", "MOVE LIN p;\nFREEZESTART 11;\nMOVE LIN a;\nMOVE LIN p;", [0, 1, 2, 3, 4]),
+        pytest.param(
+            *("[-60, 0]", "MOVE LIN p;\nFREEZESTART 11;\nMOVE LIN a;\nMOVE LIN p;", [0, 1, 2, 3, 4]),
+            marks=pytest.mark.slow,
+        ),
     ],
     ids=["may not move", "may not move on"],
 )

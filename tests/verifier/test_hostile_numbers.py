@@ -10,7 +10,7 @@ from irlx.blocks.codec import BlockFormError, block_from_plain, block_to_plain
 from irlx.verifier import verify_stream
 from long_run import first
 
-VALUES = [0.0, -1.0, 1e308, float("nan"), "inf", -0.0, -1e308, 5e-324, "-inf", 1e-9]
+VALUES = [1e308, float("nan"), 0.0, -1.0, "inf", -0.0, -1e308, 5e-324, "-inf", 1e-9]
 
 
 def leaves(plain, path=()):
@@ -55,7 +55,7 @@ def stream(kit):
 
 
 @pytest.mark.req("QA-06")
-@pytest.mark.parametrize("value", first(4, VALUES), ids=str)
+@pytest.mark.parametrize("value", first(2, VALUES), ids=str)
 def test_any_number_of_a_block(value, stream, kit):
     tried, checks = 0, len(verify_stream(stream, kit.ROBOT).checks)
     for number, record in enumerate(stream.records):
@@ -88,7 +88,7 @@ def test_a_rate_that_is_no_number(stream, kit):
 
 
 @pytest.mark.req("QA-06")
-@pytest.mark.parametrize("value", first(3, [1e308, 5e-324, 1e155, -1e200]), ids=str)
+@pytest.mark.parametrize("value", first(2, [1e308, 5e-324, 1e155, -1e200]), ids=str)
 @pytest.mark.parametrize("what", ["q", "tool"])
 def test_any_number_of_a_row(value, what, stream, kit):
     table = getattr(stream, what).copy()

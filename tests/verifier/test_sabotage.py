@@ -516,7 +516,7 @@ def test_damaged_joint_values(whole: Real, damage: Damage, fits: bool) -> None:
     assert damage.assert_found(whole, report) <= of_tool, str(report)
 
 
-@pytest.mark.parametrize("damage", JOINT_DAMAGES[::24], ids=lambda damage: damage.title)
+@pytest.mark.parametrize("damage", first(1, JOINT_DAMAGES[::24]), ids=lambda damage: damage.title)
 def test_portions_make_no_difference(whole: Real, damage: Damage, monkeypatch) -> None:
     portions_make_no_difference(whole, damage, monkeypatch, 37)
 
@@ -543,7 +543,17 @@ def portions_make_no_difference(whole: Real, damage: Damage, monkeypatch, size: 
 @pytest.mark.req("MOT-20")
 @pytest.mark.parametrize(
     ("kind", "tag", "ending"),
-    chequered([pytest.param(*limit, id="-".join(limit)) for limit in LIMITS], [".npz", ".irdata"]),
+    [
+        # By default every other one, in formats by turns.
+        pytest.param(
+            *limit,
+            ending,
+            id=f"{'-'.join(limit)}-{ending}",
+            marks=pytest.mark.slow if number % 2 or (number // 2 + other) % 2 else (),
+        )
+        for number, limit in enumerate(LIMITS)
+        for other, ending in enumerate((".npz", ".irdata"))
+    ],
 )
 def test_limits_passed_by_the_last_digits(reals, kind: str, tag: str, ending: str) -> None:
     """Against the robot's own limits, a switch and a clause: by 1e-8 of the bound, at the row and joint."""

@@ -24,12 +24,13 @@ from irlx.transform.criteria.least_motion import LeastMotion
 from irlx.transform.qp.proxqp import ProxQpSolver
 from irlx.transform.tick import TickSolver
 from irlx.transform.tick_problem import TickProblem
+from long_run import first, first_rows
 from machines import least_motion, machine
 from slow_cases import free_rows, grid_of, jacobian_at, slow_limits, used, walked
 
 pytestmark = pytest.mark.req("MOT-21")
 
-robots = pytest.mark.parametrize("name", ["arm7", "koch11"])
+robots = pytest.mark.parametrize("name", first(1, ["arm7", "koch11"]))
 
 
 @robots
@@ -98,7 +99,7 @@ def second_opinion(name: str, limits, grid: PathGrid, passage: Passage, i: int) 
     return float(np.max(np.abs(basis @ found[:r]))) / unit, abs(float(found[r] - passage.stretch[i]))
 
 
-@pytest.mark.parametrize(("name", "share"), [("arm7", 0.85), ("arm7", 0.5), ("koch11", 0.5)])
+@pytest.mark.parametrize(("name", "share"), first_rows(2, [("arm7", 0.85), ("arm7", 0.5), ("koch11", 0.5)]))
 def test_steps_are_the_best_ones_in_the_eyes_of_another_solver(name: str, share: float) -> None:
     limits, grid = slow_limits(name, share), grid_of(name)
     passage = walked(name, limits)

@@ -17,12 +17,13 @@ from irlx.pacing.slowdown.curve import JointCurve
 from irlx.pacing.slowdown.ladder import RUNGS, TimedCurve, timed_curves
 from irlx.pacing.slowdown.reserve import RESERVE, reserved
 from irlx.robot.limits import JointLimits
+from long_run import first
 from machines import machine
 from slow_cases import SPEEDS, free_rows, grid_of, slow_limits, used, walked
 
 pytestmark = pytest.mark.req("MOT-21")
 
-robots = pytest.mark.parametrize("name", ["arm7", "koch11"])
+robots = pytest.mark.parametrize("name", first(1, ["arm7", "koch11"]))
 
 
 def rungs(name: str, limits: JointLimits, q: np.ndarray | None = None) -> list[TimedCurve]:

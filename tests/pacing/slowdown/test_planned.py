@@ -19,6 +19,7 @@ from irlx.pacing.slowdown.grid import path_grid
 from irlx.pacing.slowdown.ladder import TimedCurve
 from irlx.pacing.slowdown.planned import PlannedMotion, Refusal, plan_motion, rows_on_clock
 from irlx.transform.clearance import TooNear
+from long_run import first, first_rows
 from machines import least_motion, machine
 from slow_cases import SPEEDS, WAYS, jacobian_at, slow_limits, used
 from stream_judge import excess
@@ -27,6 +28,7 @@ pytestmark = pytest.mark.req("MOT-20")
 
 KINDS = ("position", "speed", "acceleration")
 robots = pytest.mark.parametrize("name", ["arm7", "koch11"])
+of_seven = pytest.mark.parametrize("name", first(1, ["arm7", "koch11"]))
 
 
 def plan(name: str, limits, dt: float, frozen: tuple[int, ...] = ()) -> PlannedMotion | Refusal:
@@ -67,7 +69,17 @@ def test_what_came_too_near_with_the_least_reserve_is_the_reason(monkeypatch) ->
 
 @pytest.mark.parametrize(
     ("name", "dt"),
-    [*[("arm7", dt) for dt in (0.00025, 0.001, 0.01, 0.05)], ("koch11", 0.001), ("koch11", 0.05)],
+    first_rows(
+        3,
+        [
+            ("arm7", 0.00025),
+            ("arm7", 0.05),
+            ("koch11", 0.001),
+            ("arm7", 0.001),
+            ("arm7", 0.01),
+            ("koch11", 0.05),
+        ],
+    ),
 )
 def test_rows_of_a_slowed_motion_keep_every_promise(name: str, dt: float) -> None:
     limits = slow_limits(name, 0.5)
@@ -110,7 +122,7 @@ def test_joints_that_may_not_move_count_as_frozen(name: str) -> None:
         assert_promised(name, limits, found, 0.01)
 
 
-@robots
+@of_seven
 def test_zero_on_one_side_of_a_joint_that_can_give_way(name: str) -> None:
     """The joint may rise or rest but never fall; the rest of the arm makes up for it."""
     robot = machine(name)
@@ -125,7 +137,7 @@ def test_zero_on_one_side_of_a_joint_that_can_give_way(name: str) -> None:
         assert_promised(name, limits, found, 0.01)
 
 
-@robots
+@of_seven
 def test_a_clock_that_is_too_fast_is_slowed_by_the_check_of_its_rows(name: str, monkeypatch) -> None:
     """Reserves the wrong way round: the clock passes speeds by 2 %, accelerations by 5 %; no row may."""
 

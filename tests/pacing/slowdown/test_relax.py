@@ -24,8 +24,16 @@ from slow_cases import grid_of, jacobian_at, slow_limits, walked
 
 pytestmark = pytest.mark.req("MOT-21")
 
-robots = pytest.mark.parametrize("name", ["arm7", "koch11"])
+robots = pytest.mark.parametrize("name", first(1, ["arm7", "koch11"]))
 SMOOTHINGS = [Smoothing(0.04, 0.0), Smoothing(0.1, 1.0), Smoothing(0.3, 1.0)]
+some = pytest.mark.parametrize(
+    ("name", "smoothing"),
+    [
+        pytest.param(name, smoothing, marks=pytest.mark.slow if name == "koch11" and number != 1 else ())
+        for name in ("arm7", "koch11")
+        for number, smoothing in enumerate(SMOOTHINGS)
+    ],
+)
 
 
 @dataclass(frozen=True)
@@ -85,8 +93,7 @@ def objective(of: Case, q: np.ndarray, smoothing: Smoothing) -> float:
     return roughness(of, q) + float(near) + fast + 1e5 * float(np.sum(out**2 @ weights))
 
 
-@robots
-@pytest.mark.parametrize("smoothing", SMOOTHINGS)
+@some
 def test_ends_stay_and_every_knot_is_on_its_pose(name: str, smoothing: Smoothing) -> None:
     of = case(name)
     q = of.relaxed(smoothing)
@@ -117,8 +124,8 @@ def test_the_objective_falls(name: str, smoothing: Smoothing) -> None:
     assert objective(of, of.relaxed(smoothing), smoothing) < objective(of, of.passage.q, smoothing)
 
 
-@pytest.mark.parametrize("count", first(1, [3, 8]))
-@pytest.mark.parametrize("smoothing", SMOOTHINGS[1:])
+@pytest.mark.parametrize("count", first(1, [2, 8]))
+@pytest.mark.parametrize("smoothing", first(1, SMOOTHINGS[:0:-1]))
 def test_a_start_that_is_off_by_rounding_leads_to_the_same_objective(
     smoothing: Smoothing, count: int
 ) -> None:
@@ -137,8 +144,7 @@ def moved_by_rounding(of: Case, seed: int) -> Case:
     return replace(of, done={}, passage=replace(of.passage, q=of.passage.q + noise))
 
 
-@robots
-@pytest.mark.parametrize("smoothing", SMOOTHINGS)
+@some
 def test_the_result_is_stationary(name: str, smoothing: Smoothing) -> None:
     """Slopes of the stated objective along the null space, by central differences, before and after."""
     of = case(name)

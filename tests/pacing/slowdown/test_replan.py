@@ -13,6 +13,7 @@ from irlx.pacing.slowdown.clock_bounds import clock_bounds
 from irlx.pacing.slowdown.curve import JointCurve
 from irlx.pacing.slowdown.replan import brake, replan
 from irlx.robot.limits import JointLimits
+from long_run import first
 
 SPEED, ACCELERATION = 0.8, 4.0
 LAW = Trapezoid.fastest(1.0, 0.5, 1.5)
@@ -45,7 +46,7 @@ def shares(curve: JointCurve, clock, speed: float = SPEED) -> tuple[float, float
 
 
 @pytest.mark.req("MOT-10")
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", first(3, range(6)))
 def test_a_plan_taken_up_anywhere_takes_the_time_that_was_left(seed) -> None:
     curve = wavy(seed)
     whole = plan_clock(clock_bounds(curve, limits(3), LAW.rates_at(curve.s), LAW.acc))
@@ -59,7 +60,7 @@ def test_a_plan_taken_up_anywhere_takes_the_time_that_was_left(seed) -> None:
 
 
 @pytest.mark.req("MOT-10")
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", first(3, range(6)))
 def test_a_motion_can_always_brake_to_rest_on_its_path(seed) -> None:
     curve = wavy(seed)
     whole = plan_clock(clock_bounds(curve, limits(3), LAW.rates_at(curve.s), LAW.acc))
