@@ -237,6 +237,17 @@ def test_bands_lie_along_the_programmed_pose_however_the_tool_turns_freely(run, 
     assert np.abs(off[-1] - 0.08 * along)[1:].max() < 1e-8
 
 
+@pytest.mark.parametrize("bands", [(0, 0, 2, 0, 5, 0), (0, 0, 0, 5, 0, 0), (0, 3, 0, 5, 5, 0)])
+def test_bands_beside_a_turn_that_follows(run, bands: tuple[int, ...]) -> None:
+    cell = '[robot]\nmodel = "irb6"\nstart = [-8, -5, 4, 25, -12]\n[motion]\ntick_ms = 20\n'
+    way, back = (
+        f"  MOVE_INC LIN {side} WITH TOLERANCE {bands};\n" for side in ((27, -18, -13), (-27, 18, 13))
+    )
+    # Verified by the fixture.
+    found = run(f"  CYCLICSTART;\n{way}{back}  CYCLICEND;\n", cell)
+    assert travel(found) > 10.0
+
+
 @pytest.mark.parametrize("kind", FREE)
 def test_a_move_behind_bands_of_turns_begins_where_the_tool_stands(run, kind: str) -> None:
     turned = "MOVE_INC LIN POSE(POSITION(0, 40, 0), ORIXYZ(10, 0, 0)) WITH TOLERANCE (0, 0, 0, 0, 2, 0);\n"

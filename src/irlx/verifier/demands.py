@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from math import pi
+from math import inf, pi
 
 import numpy as np
 
@@ -19,9 +19,10 @@ from irlx.blocks import (
     PoseTarget,
     SignalBlock,
     Target,
+    ToleranceClause,
 )
 from irlx.promises import GOES_ON, JOINT_LINE, PATH_ORIENTATION, PATH_POSITION
-from irlx.robot.description import RobotDescription
+from irlx.robot.description import COORDINATES, RobotDescription
 from irlx.streams.joint_stream import Floats
 from irlx.verifier.frames import FramesInForce
 from irlx.verifier.geometry.allowance import EXACT, Allowance
@@ -198,16 +199,27 @@ def demands_of(outline: Outline, moves: list[MoveRows], placer: Placer) -> list[
 def allowance_of(block: MoveBlock, robot: RobotDescription | None) -> Allowance:
     """How far the tool may stand off the pose that a move asks for.
 
-    Beside bands turns that nobody asks the robot for are bands without end: one of them, or all.
+    Coordinates that the robot's task leaves out have no band. Beside bands turns that nobody asks the robot
+    for are bands without end: one of them, or all. Other turns that are left out turn the frame of the bands.
     """
     if block.tolerance is None:
         return EXACT
-    bands, free = list(block.tolerance.bands), () if robot is None else robot.free
+    bands, free = _bands(block.tolerance, robot, 0.0, 0.0), () if robot is None else robot.free
     if robot is not None and robot.task_frame is None and (len(free) != 2 or not _asks_turn(robot)):
         for name in free:
             bands[3 + TURNS.index(name)] = pi
     dx, dy, dz, da, db, dc = bands
-    return Allowance((dx, dy, dz, da, db, dc))
+    turns = zip(TURNS, bands[3:], strict=True)
+    follows = robot is not None and any(name not in robot.coordinates and band < pi for name, band in turns)
+    return Allowance((dx, dy, dz, da, db, dc), follows)
+
+
+def _bands(clause: ToleranceClause, robot: RobotDescription | None, shift: float, turn: float) -> list[float]:
+    """The six bands, those of coordinates that the robot's task leaves out being `shift` and `turn`."""
+    left = [turn if name in TURNS else shift for name in COORDINATES]
+    asked = COORDINATES if robot is None else robot.coordinates
+    bands = zip(COORDINATES, clause.bands, left, strict=True)
+    return [band if name in asked else other for name, band, other in bands]
 
 
 def _asks_turn(robot: RobotDescription) -> bool:
@@ -217,13 +229,15 @@ def _asks_turn(robot: RobotDescription) -> bool:
 def _goes_on(before: Demand, move: MoveRows, start: Place, placer: Placer) -> Place:
     """Where the path of a move starts: WITH TOLERANCE where that of the move before WITH TOLERANCE ended,
     with the same tool and if that stands within the bands about it, else where the tool is."""
-    asked, end, here = allowance_of(move.block, placer.robot), before.end.pose, start.pose
+    clause, end, here = move.block.tolerance, before.end.pose, start.pose
     tools = placer.tools
-    if asked is EXACT or before.move.block.tolerance is None or end is None or here is None:
+    if clause is None or before.move.block.tolerance is None or end is None or here is None:
         return start
     if tools.number(before.move.block.id) != tools.number(move.block.id):
         return start
-    return Place(end, start.posture) if _within(asked, end, here) else start
+    # Where the tool stands in what nobody asks for tells nothing.
+    dx, dy, dz, da, db, dc = _bands(clause, placer.robot, inf, pi)
+    return Place(end, start.posture) if _within(Allowance((dx, dy, dz, da, db, dc)), end, here) else start
 
 
 def _within(allowance: Allowance, asked: Pose, reached: Pose) -> bool:

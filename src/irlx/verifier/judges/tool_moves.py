@@ -174,16 +174,17 @@ class ToolMoveChecks:
         allowance = demand.allowance
         # In the frame of the goal, where there is anything to allow.
         apart = (reached[0] - goal[0])[None]
-        left = allowance.shifted_off(apart @ goal[1]) if allowance.shifts else apart
-        self._goal[0].add(row, np.linalg.norm(left, axis=1), PATH_POSITION)
         attitude = self._evidence.placer.attitude(reached[1], self._evidence.posture(move.last))
+        frame = allowance.frames(attitude, goal[1][None])[0]
+        left = allowance.shifted_off(apart @ frame) if allowance.shifts else apart
+        self._goal[0].add(row, np.linalg.norm(left, axis=1), PATH_POSITION)
         self._goal[1].add(row, allowance.turned_off(attitude, goal[1][None]), PATH_ORIENTATION)
         if demand.gives_orientation:
             self._goal[1].add_other(row, followed_off(attitude, goal[1]), FOLLOWED_TURN, PATH_ORIENTATION)
-        self._add_bands(row, allowance, (reached[0][None], reached[1][None]), (goal[0][None], goal[1][None]))
+        self._add_bands(row, allowance, (reached[0][None], attitude), (goal[0][None], goal[1][None]))
 
     def _add_bands(self, rows: Integers, allowance: Allowance, tool: Pose, asked: Pose) -> None:
-        """Poses of the tool (R, 3), (R, 3, 3) within the bands about the poses asked for."""
+        """Positions (R, 3) and attitudes (R, ..) of the tool within the bands about the poses asked for."""
         if allowance is not EXACT:
             passed = allowance.excess(*tool, asked)
             unit = "m|rad" if allowance.shifts and allowance.turns else "m" if allowance.shifts else "rad"
@@ -197,13 +198,13 @@ class ToolMoveChecks:
         """
         assert course.way is not None
         here = stretch.after
-        positions, rotations = rows.positions[here], rows.rotations[here]
-        asked = allowance.asked(course.way, positions, rotations)
-        left = allowance.shifted_off(np.einsum("rji,rj->ri", asked[1], positions - asked[0]))
+        positions, attitudes = rows.positions[here], rows.attitudes[here]
+        asked = allowance.asked(course.way, positions, attitudes)
+        frames = allowance.frames(attitudes, asked[1])
+        left = allowance.shifted_off(np.einsum("rji,rj->ri", frames, positions - asked[0]))
         self._path[0].add(stretch.rows, np.linalg.norm(left, axis=1), PATH_POSITION)
-        turned = allowance.turned_off(rows.attitudes[here], asked[1])
-        self._path[1].add(stretch.rows, turned, PATH_ORIENTATION)
-        self._add_bands(stretch.rows, allowance, (positions, rotations), asked)
+        self._path[1].add(stretch.rows, allowance.turned_off(attitudes, asked[1]), PATH_ORIENTATION)
+        self._add_bands(stretch.rows, allowance, (positions, attitudes), asked)
         self._add_shifted_progress(stretch, course, positions, allowance.farthest + PATH_POSITION)
 
     def _add_shifted_progress(
@@ -226,7 +227,7 @@ class ToolMoveChecks:
         """Judge rows against their path; the path's own orientation there where not all turns count."""
         assert course.way is not None
         if allowance.turns:
-            tool = rows.positions[stretch.after], rows.rotations[stretch.after]
+            tool = rows.positions[stretch.after], rows.attitudes[stretch.after]
             self._add_bands(stretch.rows, allowance, tool, allowance.asked(course.way, *tool))
         found = course.way.deviation(rows.positions[stretch.after], rows.attitudes[stretch.after])
         self._path[0].add(stretch.rows, found.position, PATH_POSITION)
