@@ -17,7 +17,7 @@ from irlx.cell.errors import CellError
 from irlx.cell.limit_entry import LimitEntry
 from irlx.cell.scene import read_scene
 from irlx.cell.schema import CellFile, FrameSection, LimitsSection, RobotSection
-from irlx.diagnostics import Diagnostic, Place, report
+from irlx.diagnostics import Diagnostic, Place, report, told_apart
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.robot.description import RobotDescription
 from irlx.robot.limits import JointLimits
@@ -175,7 +175,7 @@ def _start_errors(q: Array, limits: JointLimits, robot: RobotDescription, file: 
     for joint in np.flatnonzero((q < limits.position_lower) | (q > limits.position_upper)):
         key = f"robot.start[{joint + 1}]"
         values = (q[joint], limits.position_lower[joint], limits.position_upper[joint])
-        found, lower, upper = (f"{from_si(robot, int(joint), value):.6g}" for value in values)
+        found, lower, upper = told_apart(*(from_si(robot, int(joint), float(value)) for value in values))
         unit = "mm" if robot.axes[joint].is_prismatic else "deg"
         data: dict[str, Any] = {"joint": robot.axes[joint].name, "found": found, "unit": unit}
         data |= {"lower": lower, "upper": upper}

@@ -9,7 +9,7 @@ from unicodedata import normalize
 from irlx.cell.findings import Findings
 from irlx.cell.obstacle_shape import sizes_fit, solid_shape
 from irlx.cell.schema import CellFile, FrameSection, ObstacleSection, WaypointSection
-from irlx.diagnostics import Diagnostic
+from irlx.diagnostics import Diagnostic, told_apart
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.language.keywords import is_name
 from irlx.scene.obstacle import Obstacle, Waypoint
@@ -45,7 +45,8 @@ def _obstacle(section: ObstacleSection, frames: Frames, folder: Path, findings: 
     base = base_of(section, frames, findings)
     _check_times(section.trajectory or [], findings)
     if section.margin > section.influence:
-        findings.error("IRL633", "margin", margin=f"{section.margin:g}", influence=f"{section.influence:g}")
+        margin, influence = told_apart(section.margin, section.influence)
+        findings.error("IRL633", "margin", margin=margin, influence=influence)
     shape = solid_shape(section, folder, findings)
     trajectory = tuple(
         Waypoint(waypoint.time, base.of(_pose(waypoint))) for waypoint in section.trajectory or ()
@@ -89,7 +90,8 @@ def _check_times(waypoints: list[WaypointSection], findings: Findings) -> None:
         before, found = waypoints[index - 1].time, waypoints[index].time
         if found <= before:
             key = f"trajectory[{index + 1}].time"
-            findings.error("IRL638", key, found=f"{found:g}", before=f"{before:g}")
+            at, earlier = told_apart(found, before)
+            findings.error("IRL638", key, found=at, before=earlier)
 
 
 def _check_names(sections: list[ObstacleSection], file: str, errors: list[Diagnostic]) -> None:

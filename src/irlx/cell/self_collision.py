@@ -7,7 +7,7 @@ from pathlib import Path
 from irlx.cell.findings import Findings
 from irlx.cell.link_meshes import mesh_faults
 from irlx.cell.schema import RobotSection, SelfCollisionSection
-from irlx.diagnostics import Diagnostic
+from irlx.diagnostics import Diagnostic, told_apart
 from irlx.diagnostics.diagnostic import near_matches
 from irlx.diagnostics.whole_file import whole_text
 from irlx.robot.description import RobotDescription
@@ -36,7 +36,8 @@ def link_clearance(
     findings = Findings(file, "robot.self_collision", errors, warnings)
     listed = _listed_pairs(given, robot, findings)
     if given.margin > given.influence:
-        findings.error("IRL633", "margin", margin=f"{given.margin:g}", influence=f"{given.influence:g}")
+        margin, influence = told_apart(given.margin, given.influence)
+        findings.error("IRL633", "margin", margin=margin, influence=influence)
     if not active:
         return None
     lacking = mesh_faults(robot, section.model or "", file)

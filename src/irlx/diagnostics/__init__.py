@@ -2,6 +2,7 @@
 
 from irlx.diagnostics.codes import CATALOGUE, Code
 from irlx.diagnostics.diagnostic import Diagnostic, Related, Severity, report
+from irlx.diagnostics.digits import told_apart
 from irlx.diagnostics.error import IrlxError
 from irlx.diagnostics.place import Place, SourceText, Span
 
@@ -16,4 +17,5 @@ __all__ = [
     "SourceText",
     "Span",
     "report",
+    "told_apart",
 ]

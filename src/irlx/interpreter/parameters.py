@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from irlx.blocks import CriterionChoice, CriterionParam
-from irlx.diagnostics import SourceText
+from irlx.diagnostics import SourceText, told_apart
 from irlx.interpreter.compiled import Compiled
 from irlx.interpreter.errors import fail
 from irlx.interpreter.expressions import Expressions
@@ -82,17 +82,17 @@ class Parameters:
 
 def positive(found: Latched, source: SourceText) -> float:
     """The value where it is greater than 0. Raises InterpreterError, IRL505, at its place."""
-    return _within(found, found.value > 0.0, "greater than 0", source)
+    return _within(found, found.value > 0.0, "greater than 0", 0.0, source)
 
 
 def not_negative(found: Latched, source: SourceText) -> float:
     """The value where it is 0 or more. Raises InterpreterError, IRL505, at its place."""
-    return _within(found, found.value >= 0.0, "0 or more", source)
+    return _within(found, found.value >= 0.0, "0 or more", 0.0, source)
 
 
 def share(found: Latched, source: SourceText) -> float:
     """Percent as a fraction of at most 1. Raises InterpreterError, IRL505, at its place."""
-    return _within(found, found.value <= 100.0, "at most 100 %", source) / 100.0
+    return _within(found, found.value <= 100.0, "at most 100 %", 100.0, source) / 100.0
 
 
 def word(found: Latched, words: Sequence[str], source: SourceText) -> str:
@@ -105,9 +105,9 @@ def word(found: Latched, words: Sequence[str], source: SourceText) -> str:
     return value
 
 
-def _within(found: Latched, holds: bool, expected: str, source: SourceText) -> float:
+def _within(found: Latched, holds: bool, expected: str, bound: float, source: SourceText) -> float:
     if not holds:
-        data = {"param": found.name, "expected": expected, "value": f"{found.value:g}"}
+        data = {"param": found.name, "expected": expected, "value": told_apart(found.value, bound)[0]}
         raise fail("IRL505", source, found.node.span, **data)
     value: float = found.value
     return value

@@ -9,7 +9,7 @@ from math import inf
 import numpy as np
 
 from irlx.blocks import MotionLaw, Profile
-from irlx.diagnostics import Place, report
+from irlx.diagnostics import Place, report, told_apart
 from irlx.motion.errors import MotionError
 from irlx.motion.fastest_law import fastest_s_curves, fastest_trapezoids
 from irlx.motion.sections import Sections
@@ -87,7 +87,7 @@ def _with_time(
         return law
     if least > time:
         # Of time on the path, as OVERRIDE is no part of what TIME asks for.
-        asked, fastest = (f"{value * stage.law.override:.6g}" for value in (time, least))
+        asked, fastest = told_apart(*(value * stage.law.override for value in (time, least)))
         governor = "the bounds of this move and the speeds of its neighbours"
         raise MotionError(report("IRL421", stage.place, asked=asked, least=fastest, governor=governor))
     slowest = 0.5 * min(stage.length / time, top)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.blocks import ArcCourse, MoveBlock
-from irlx.diagnostics import Place, report
+from irlx.diagnostics import Place, report, told_apart
 from irlx.motion.arc import NEAREST_POINTS, Arc, Circle, spread
 from irlx.motion.errors import MotionError
 from irlx.motion.target_pose import target_pose
@@ -61,9 +61,9 @@ def _via_share(circle: Circle, travel: float, course: ArcCourse, place: Place) -
     """Share of the travel at which the via point is passed for the first time."""
     share = circle.share_at_via(travel)
     if share is None:
-        way = np.degrees(circle.via_angle)
-        angle = np.degrees(course.angle if course.angle is not None else travel)
-        raise MotionError(report("IRL429", place, angle=f"{angle:.6g}", via=f"{way:.6g}"))
+        asked = course.angle if course.angle is not None else travel
+        angle, via = told_apart(float(np.degrees(asked)), float(np.degrees(circle.via_angle)))
+        raise MotionError(report("IRL429", place, angle=angle, via=via))
     return share
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.blocks import MotionLaw, MoveBlock, MoveKind, Profile
-from irlx.diagnostics import Place, report
+from irlx.diagnostics import Place, report, told_apart
 from irlx.motion.errors import MotionError
 from irlx.motion.fastest_law import fastest_s_curves
 from irlx.motion.line import Line
@@ -102,7 +102,7 @@ def with_time(fastest: TimeLaw, law: MotionLaw, place: Place, governor: Callable
     if law.duration is None:
         return fastest
     if law.duration < fastest.duration * (1.0 - _TIME_SLACK):
-        asked, least = f"{law.duration:.6g}", f"{fastest.duration:.6g}"
+        asked, least = told_apart(law.duration, fastest.duration)
         raise MotionError(report("IRL421", place, asked=asked, least=least, governor=governor()))
     return fastest.stretched(law.duration)
 

@@ -11,7 +11,7 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from irlx.blocks import LimitKind
-from irlx.diagnostics import Diagnostic, Place, report
+from irlx.diagnostics import Diagnostic, Place, report, told_apart
 from irlx.motion.plan_path import PlannedPath
 from irlx.motion.pose_path import PosePath
 from irlx.pacing.demand import Demand
@@ -64,6 +64,22 @@ def joint_value(robot: RobotDescription, joint: int, value: float, per: str = ""
     """Joint value in people's units: rad -> deg, m -> mm; `per` is '', '/s' or '/s2'."""
     prismatic = robot.axes[joint].is_prismatic
     return f"{value * 1000.0:.6g} mm{per}" if prismatic else f"{np.degrees(value):.6g} deg{per}"
+
+
+def joint_values(robot: RobotDescription, joint: int, *values: float, per: str = "") -> list[str]:
+    """Values of a joint that a message compares, in people's units, with the digits that tell them apart."""
+    prismatic = robot.axes[joint].is_prismatic
+    unit = f"{'mm' if prismatic else 'deg'}{per}"
+    told = told_apart(*(1e3 * value if prismatic else float(np.degrees(value)) for value in values))
+    return [f"{value} {unit}" for value in told]
+
+
+def outside_words(robot: RobotDescription, joint: int, value: float, limits: JointLimits) -> dict[str, Any]:
+    """Words of a message on a joint's value outside its position limits: joint, value, lower, upper."""
+    lower, upper = (float(side[joint]) for side in limits.pair("position"))
+    names = "value", "lower", "upper"
+    told = dict(zip(names, joint_values(robot, joint, float(value), lower, upper), strict=True))
+    return {"joint": robot.axes[joint].name, **told}
 
 
 def explain_halt(
@@ -264,22 +280,23 @@ def explain_broken_row(
 ) -> Diagnostic:
     """Diagnostic of rows that would break a bound by differences (IRL523)."""
     per = {"SPEED": "/s", "ACCELERATION": "/s2"}.get(broken.kind.value, "")
+    value, bound = joint_values(robot, broken.joint, broken.value, broken.bound, per=per)
     return report(
         "IRL523",
         place,
         joint=robot.axes[broken.joint].name,
         kind=broken.kind.value.lower(),
-        value=joint_value(robot, broken.joint, broken.value, per),
-        bound=joint_value(robot, broken.joint, broken.bound, per),
+        value=value,
+        bound=bound,
         tick=first_tick + broken.row,
     )
 
 
 def slower_than_allowed(duration: float, programmed: float, longest: float, place: Place) -> Diagnostic:
     """IRL525: a move slowed more than the caller allows; all in s."""
-    data: dict[str, Any] = {"duration": f"{duration:.4g}", "programmed": f"{programmed:.4g}"}
-    data |= {"factor": f"{duration / programmed:.3g}", "allowed": f"{longest / programmed:.3g}"}
-    return report("IRL525", place, **data)
+    lasts, asked = told_apart(duration, programmed, digits=4)
+    factor, allowed = told_apart(duration / programmed, longest / programmed, digits=3)
+    return report("IRL525", place, duration=lasts, programmed=asked, factor=factor, allowed=allowed)
 
 
 def goal_shortfall(around: Surroundings, rotation: Array, position: Array, q: Array, whole: bool) -> Nearest:

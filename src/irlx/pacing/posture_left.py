@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.diagnostics import Diagnostic, Place, report
-from irlx.pacing.impossible import joint_value
+from irlx.pacing.impossible import joint_value, outside_words
 from irlx.robot.description import RobotDescription
 from irlx.robot.limits import JointLimits
 from irlx.transform.posture_flow import FlowEnd
@@ -60,13 +60,6 @@ def beyond_limits(
     """IRL350 for every free joint that a posture konf (n,) puts outside the position limits in force."""
     outside = free & ((konf < limits.position_lower) | (konf > limits.position_upper))
     return [
-        report(
-            "IRL350",
-            place,
-            joint=robot.axes[joint].name,
-            value=joint_value(robot, joint, konf[joint]),
-            lower=joint_value(robot, joint, limits.position_lower[joint]),
-            upper=joint_value(robot, joint, limits.position_upper[joint]),
-        )
+        report("IRL350", place, **outside_words(robot, joint, konf[joint], limits))
         for joint in (int(index) for index in np.flatnonzero(outside))
     ]

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from irlx.blocks import FreezeBlock, JointRange, LimitClause, LimitKind, LimitSwitchBlock
 from irlx.diagnostics import Diagnostic, Place, report
 from irlx.pacing.errors import PacingError
-from irlx.pacing.impossible import joint_value
+from irlx.pacing.impossible import joint_values, outside_words
 from irlx.pacing.options import LIMIT_WORDS
 from irlx.robot.description import RobotDescription
 from irlx.robot.limits import JointLimits
@@ -56,7 +56,7 @@ def _range_errors(
     """IRL340 for bounds the wrong way round, IRL342 for rates without standstill; all joints in one."""
     crossed, moving = [], []
     for joint, (lower, upper) in enumerate(zip(joint_range.lower, joint_range.upper, strict=True)):
-        low, high = (joint_value(robot, joint, value, _PER[kind]) for value in (lower, upper))
+        low, high = joint_values(robot, joint, lower, upper, per=_PER[kind])
         words = f"{robot.axes[joint].name} ({low} to {high})"
         if lower > upper:
             crossed.append(words)
@@ -73,15 +73,9 @@ def _range_errors(
 def _outside(
     joint: int, q: Array, lower: Array, upper: Array, robot: RobotDescription, place: Place
 ) -> Diagnostic:
-    side, bound = ("below", lower[joint]) if q[joint] < lower[joint] else ("above", upper[joint])
-    return report(
-        "IRL345",
-        place,
-        joint=robot.axes[joint].name,
-        value=joint_value(robot, joint, q[joint]),
-        side=side,
-        bound=joint_value(robot, joint, bound),
-    )
+    side, passed = ("below", lower[joint]) if q[joint] < lower[joint] else ("above", upper[joint])
+    value, bound = joint_values(robot, joint, float(q[joint]), float(passed))
+    return report("IRL345", place, joint=robot.axes[joint].name, value=value, side=side, bound=bound)
 
 
 def _wider(
@@ -112,15 +106,9 @@ def check_joint_target(q: Array, robot: RobotDescription, limits: JointLimits, p
     outside = np.flatnonzero((q < limits.position_lower) | (q > limits.position_upper))
     if outside.size == 0:
         return
-    found = [
-        report(
-            "IRL424",
-            place,
-            joint=robot.axes[joint].name,
-            value=joint_value(robot, joint, q[joint]),
-            lower=joint_value(robot, joint, limits.position_lower[joint]),
-            upper=joint_value(robot, joint, limits.position_upper[joint]),
-        )
-        for joint in (int(index) for index in outside)
-    ]
-    raise PacingError(found)
+    raise PacingError(
+        [
+            report("IRL424", place, **outside_words(robot, joint, q[joint], limits))
+            for joint in (int(index) for index in outside)
+        ]
+    )

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 import irlx
-from irlx.blocks import FreezeBlock, MoveBlock, ReconfigureBlock
+from irlx.blocks import FreezeBlock, MoveBlock, ReconfigureBlock, SignalBlock
 from irlx.cell.load import load_cell
 from irlx.streams.formats import read_stream
 
@@ -257,7 +257,7 @@ class _Judge:
             raise Found(f"stream: {count} samples, the run has {last} until there")
 
     def interrupted(self, run: irlx.Run) -> None:
-        """Ctrl-C or too many statements leave a valid stream, which is the beginning of the whole one."""
+        """Ctrl-C or too many statements leave a valid stream, which begins like the whole one."""
         if self.rng.random() < 0.5:
             stop, steps = int(self.rng.integers(1, len(run.stream.records) + 2)), None
         else:
@@ -280,12 +280,30 @@ class _Judge:
             part = error.run
             if error.reason.code not in {"IRL510", self.verdict.code}:
                 raise Found(f"cut: refused with {error.reason.code}, whole {self.verdict.code}") from None
-        if not np.array_equal(part.q, run.q[: len(part.q)]):
+        rows = rows_in_common(part)
+        if not np.array_equal(part.q[:rows], run.q[:rows]):
             raise Found("cut: the rows are not the first ones of the whole run")
         report = irlx.verify(part, cell=self.cell)
         failed = [check for check in report.failed if check.name != "complete"]
         if failed:
             raise Found(f"cut {failed[0].name}: {failed[0].text}\n{report}")
+
+
+def rows_in_common(part: irlx.Run) -> int:
+    """How many rows of a run that was cut off are those of the whole one.
+
+    A move that was to pass its target stops there where the next one does not come any more, and with it all
+    moves joined to it are planned anew: then the rows up to the stop before them.
+    """
+    rows = len(part.q)
+    for record in reversed(part.stream.records):
+        block = record.block
+        if isinstance(block, SignalBlock):
+            continue
+        if not isinstance(block, MoveBlock) or block.blend is None:
+            break
+        rows = record.tick + 1
+    return rows
 
 
 def words_of(block) -> list[str]:

@@ -72,7 +72,7 @@ class Moves:
         else:
             words["C_CP"] = (0.3, float(rng.choice([0.0, 1e-7, 0.2, 1.0])) * 1e3 * body.way)
         found = [
-            f"{word} := {self.values.real(x, 2, exact=x == 0.0)}"
+            f"{word} := {self.values.real(x, 2, exact=x in (0.0, 100.0))}"
             for word, (p, x) in words.items()
             if script.chance(p)
         ]

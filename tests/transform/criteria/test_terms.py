@@ -167,6 +167,35 @@ def test_terms_are_added_to_the_posture_term(name: str) -> None:
     assert np.sum(diagonal) == pytest.approx(np.sum(WEIGHTS), rel=1e-12)
 
 
+@pytest.mark.parametrize("name", TERMS)
+def test_what_terms_ask_for_is_held_to_a_size(name: str) -> None:
+    """The way of b, -H^-1 b, is as long as asked, measured by H, and leads where it led; all else stays."""
+    weighted = tuple(Weighted(term, 0.5 + k) for k, term in enumerate(TERMS[name]))
+    begun = Combined(Posture(WEIGHTS, REFERENCE), weighted, ELAPSED).begun(Q)
+    nothing = tuple(
+        Weighted(Given(np.zeros(3), w.term.quadratic(Q), w.term.posture_share(Q)), w.weight)
+        for w in weighted
+        if w.term.acts(Q)
+    )
+    bare = Combined(Posture(WEIGHTS, REFERENCE), nothing, ELAPSED).begun(Q)
+    step = np.array([0.1, -0.4, 0.2])
+
+    def asked(criterion) -> np.ndarray:
+        return criterion.gradient(Q, step) - bare.gradient(Q, step)
+
+    inverse = begun.inverse_hessian()
+    inverse = np.diag(inverse) if inverse.ndim == 1 else inverse
+    size = float(np.sqrt(asked(begun) @ inverse @ asked(begun)))
+    assert begun.asking_at_most(1.001 * size) is begun
+    if size == 0.0:
+        return
+    held = begun.asking_at_most(0.25 * size)
+    np.testing.assert_allclose(asked(held), 0.25 * asked(begun), rtol=1e-9, atol=1e-12)
+    np.testing.assert_array_equal(held.hessian(), begun.hessian())
+    base = Posture(WEIGHTS, REFERENCE)
+    assert base.asking_at_most(0.0) is base
+
+
 def test_terms_that_do_not_act_leave_the_posture_term_itself() -> None:
     base = Posture(WEIGHTS, REFERENCE)
     combined = Combined(base, (Weighted(Given(np.ones(3), acting=False), 1.0),), ELAPSED)

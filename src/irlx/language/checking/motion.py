@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
+from irlx.diagnostics import told_apart
 from irlx.language import tree
 from irlx.language.builtins import LIMIT_TYPES, MOVE_PARAMETERS
 from irlx.language.checking.context import Settled, Typed
@@ -139,7 +140,8 @@ class Motion(TypeForms):
             elif key in _NOT_NEGATIVE and not value >= 0:
                 self.add("IRL505", param.value, param=shown, expected="0 or more", value=f"{value:g}")
             elif key in _SHARES and value > 100:
-                self.add("IRL505", param.value, param=shown, expected="at most 100 %", value=f"{value:g}")
+                found = told_apart(value, 100.0)[0]
+                self.add("IRL505", param.value, param=shown, expected="at most 100 %", value=found)
 
     def _angle(self, param: tree.MoveParam) -> None:
         found = self.trial(lambda: self.typed(param.value)).typed

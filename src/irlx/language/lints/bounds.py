@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from irlx.diagnostics import Diagnostic, Place, SourceText, report
+from irlx.diagnostics import Diagnostic, Place, SourceText, report, told_apart
 from irlx.language.checking.context import Facts
 from irlx.language.lints.settled import value_of
 
@@ -18,5 +18,6 @@ def crossed_bounds(facts: Facts, source: SourceText) -> Iterator[Diagnostic]:
         for joint, (low, high) in enumerate(zip(lows, highs, strict=False), 1):
             if isinstance(low, int | float) and isinstance(high, int | float) and low > high:
                 place = Place.in_text(source, node.lower.span)
-                yield report("IRL310", place, joint=joint, low=f"{low:g}", high=f"{high:g}")
+                shown = told_apart(low, high)
+                yield report("IRL310", place, joint=joint, low=shown[0], high=shown[1])
                 break

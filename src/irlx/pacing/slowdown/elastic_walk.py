@@ -8,13 +8,18 @@ alike: it is the local loss of time, and it is paid for together with the motion
 
 D_c the criterion's own step. Hard bounds instead would whip the null space about. Positions are never
 stretched. Accelerations play no part here: the clock sees to them.
+
+What CRITERION adds to D_c is held to |D_c'|_W <= dT |u|_W, u being the speeds that the joints can come to in
+the motion. As u <= v and nu = |v|_W^2 no such wish pays for a stretch: a unit of it is worth (W D_c')' v / dT
+at most, by Cauchy and Schwarz no more than nu. Without this a joint on a limit, where JOINT_BARRIER has a
+slope of 1e6, made a move of 10 ms last for minutes.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import prod
+from math import prod, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +28,7 @@ from irlx.pacing.slowdown.grid import PathGrid
 from irlx.pacing.slowdown.model import Model
 from irlx.pacing.slowdown.reserve import rounded_inside
 from irlx.pacing.slowdown.room import Room
+from irlx.robot.limits import JointLimits
 from irlx.transform.clearance import SideRows, TickClearance
 from irlx.transform.compact import null_space_rows
 from irlx.transform.criteria.criterion import Criterion
@@ -73,6 +79,7 @@ def elastic_walk(
     `coarse`: postures only as near to the best ones as a dry run needs.
     """
     steps = _Steps(model, reserve, coarse)
+    wish = _largest_wish(model, float(np.sum(grid.times)))
     targets = model.targets(grid.poses)
     q = np.empty((grid.intervals + 1, start.size))
     stretch = np.zeros(grid.intervals)
@@ -81,6 +88,7 @@ def elastic_walk(
     for i in range(grid.intervals):
         room = Room.at(model, q[i], (bounds[0][i + 1], bounds[1][i + 1]), reserve, float(grid.times[i]))
         criterion = criterion_of(float(grid.s[i + 1]), float(grid.s[i + 1] - grid.s[i])).begun(q[i])
+        criterion = criterion.asking_at_most(room.duration * wish)
         keeping = _kept_clear(model, q[i], room.duration, elapsed, reserve)
         problem = TickProblem(targets[i + 1], q[i], room.none(), criterion, model.free, keeping)
         found = steps.step(problem, room, _continued(grid.s, q, i), elapsed)
@@ -90,6 +98,22 @@ def elastic_walk(
         stretch[i] = found[1]
         elapsed += room.duration * (1.0 + found[1])
     return Passage(q, stretch)
+
+
+def _speeds(limits: JointLimits) -> Array:
+    """Speeds (n,) that joints may have in both directions, 1 rad/s or m/s where there is no limit."""
+    speed = np.minimum(limits.speed_upper, -limits.speed_lower)
+    return np.where(np.isfinite(speed), speed, 1.0)
+
+
+def _largest_wish(model: Model, duration: float) -> float:
+    """|u|_W, inf where no joint is limited: u what joints come to from rest in half of `duration` s."""
+    limits = model.limits
+    acceleration = np.minimum(limits.acceleration_upper, -limits.acceleration_lower)
+    if not np.any(np.isfinite([acceleration, limits.speed_upper, limits.speed_lower])):
+        return np.inf
+    reached = np.minimum(_speeds(limits), 0.5 * duration * acceleration)
+    return sqrt(float(model.weights @ reached**2))
 
 
 class _Steps:
@@ -167,10 +191,8 @@ class _Stretch:
         self._problem = problem
         self.active = active
         """Rows held in the last round; those of the interval before are a good guess."""
-        speed = np.minimum(model.limits.speed_upper, -model.limits.speed_lower)
-        speed = np.where(np.isfinite(speed), speed, 1.0)
         # A price in the units of the motion's own cost: one unit of stretch costs the motion at all limits.
-        self._price = max(float(model.weights @ speed**2), 1e-12)
+        self._price = max(float(model.weights @ _speeds(model.limits) ** 2), 1e-12)
 
     def solve(self, begin: Array) -> tuple[Array, float] | None:
         """Whole step (n,) and its stretch, searched from `begin`; None where none meets the pose."""

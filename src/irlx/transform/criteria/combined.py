@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import sqrt
 
 import numpy as np
 
@@ -80,6 +81,7 @@ class _Begun(Criterion):
     def __init__(self, whole: Combined, base: Criterion, share: float, linear: Array, added: Array) -> None:
         self._whole = whole
         self._base = base
+        self._parts = share, linear, added
         own = base.hessian()
         hessian = _sum(share * own, added)
         size = float((hessian if hessian.ndim == 1 else hessian.diagonal()).sum())
@@ -94,6 +96,14 @@ class _Begun(Criterion):
     def name(self) -> str:  # type: ignore[override]
         """Names of all terms."""
         return self._whole.name
+
+    def asking_at_most(self, size: float) -> Criterion:
+        """The same, b so small that its way |H^-1 b|, weighed by H, is no longer than `size`."""
+        asked = sqrt(float(self._linear @ times(self.inverse_hessian(), self._linear)))
+        if asked <= size:
+            return self
+        share, linear, added = self._parts
+        return _Begun(self._whole, self._base, share, linear * (size / asked), added)
 
     def value(self, q: Array, step: Array) -> float:
         """phi at a step, scaled."""

@@ -26,6 +26,11 @@ class Criterion(ABC):
         """The criterion of a tick that begins at posture q (n,): what depends on that is computed once."""
         return self
 
+    def asking_at_most(self, size: float) -> Criterion:
+        """The criterion of a tick that has begun, what it adds to a posture term held to a `size`, for plans
+        in which a step may be paid for by slowing down: 1/2 size^2 is what phi may gain by it."""
+        return self
+
     @abstractmethod
     def value(self, q: Array, step: Array) -> float:
         """phi at a step."""

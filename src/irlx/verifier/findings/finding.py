@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from irlx.diagnostics import told_apart
+
 OK = "ok"
 FAILED = "failed"
 NOT_CHECKED = "not checked"
@@ -35,8 +37,8 @@ class Finding:
         line = f", line {self.line}" if self.line is not None else ""
         block = f", block {self.block}" if self.block else ""
         unit = f" {self.unit}" if self.unit else ""
-        value = f"{self.value:.10g}{unit} (allowed {self.allowed:.10g})"
-        return f"{value} at tick {self.tick}{joint}{block}{line}"
+        value, allowed = told_apart(self.value, self.allowed, digits=10)
+        return f"{value}{unit} (allowed {allowed}) at tick {self.tick}{joint}{block}{line}"
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import isfinite
 from typing import Any
 
+from irlx.diagnostics import told_apart
 from irlx.verifier.findings.finding import FAILED, NO_CASE, NOT_CHECKED, OK, Check, Finding, Subject
 
 _STATUSES = (OK, FAILED, NOT_CHECKED, NO_CASE)
@@ -75,7 +76,11 @@ def _row(check: Check) -> tuple[str, ...]:
         place.append(worst.constraint)
     if worst.line is not None:
         place.append(f"line {worst.line}")
-    return check.name, status, f"{worst.value:.6g}{unit}", f"{worst.allowed:.6g}", ", ".join(place)
+    if check.status == FAILED:
+        value, allowed = told_apart(worst.value, worst.allowed)
+    else:
+        value, allowed = f"{worst.value:.6g}", f"{worst.allowed:.6g}"
+    return check.name, status, f"{value}{unit}", allowed, ", ".join(place)
 
 
 def plain_checks(subject: Subject, checks: tuple[Check, ...]) -> dict[str, Any]:
