@@ -12,6 +12,7 @@ import argparse
 import re
 import sys
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -117,10 +118,13 @@ def relimited(variant: Variant, acceleration: float, folder: Path) -> Variant:
 
 def runs_of(experiment: Experiment, tick: float) -> list[irlx.Run]:
     """Runs of the variants of an experiment at a tick, ms."""
-    return [
-        irlx.run(HERE / variant.program, cell=HERE / variant.cell, tick_ms=tick)
-        for variant in experiment.variants
-    ]
+    return [run_of(variant.program, variant.cell, tick) for variant in experiment.variants]
+
+
+@cache
+def run_of(program: str, cell: str, tick: float) -> irlx.Run:
+    """The run of a program, which several experiments may look at: it is made once."""
+    return irlx.run(HERE / program, cell=HERE / cell, tick_ms=tick)
 
 
 def print_facts(name: str, experiment: Experiment, ticks: list[float], columns: list[Facts]) -> None:

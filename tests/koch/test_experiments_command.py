@@ -16,33 +16,35 @@ KOCH = Path(__file__).parents[2] / "programs" / "koch"
 SOURCE = Path(irlx.__file__).parents[1]
 
 
+@pytest.fixture(scope="module")
+def experiments():
+    """The script as a module: a run that several tests ask it for is made once."""
+    before = set(sys.modules)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(KOCH))
+        import experiments
+
+        yield experiments
+    for name in ("experiments", "experiment_facts", "experiment_figures"):
+        if name not in before:
+            sys.modules.pop(name, None)
+
+
 @pytest.fixture
-def command(tmp_path):
-    """Runs experiments.py with arguments in a folder of its own, as where matplotlib is not installed."""
-    hidden = tmp_path / "hidden"
-    hidden.mkdir()
-    message = "No module named 'matplotlib'"
-    text = f'raise ModuleNotFoundError("{message}", name="matplotlib")\n'
-    (hidden / "matplotlib.py").write_text(text, encoding="utf-8")
+def inside(experiments, tmp_path, monkeypatch, capsys):
+    """Runs experiments.py with arguments in a folder of its own: exit code, stdout, stderr."""
 
     def run(*arguments: str) -> subprocess.CompletedProcess[str]:
-        path = os.pathsep.join([str(hidden), str(SOURCE)])
-        environment = {**os.environ, "PYTHONPATH": path, "PYTHONIOENCODING": "utf-8"}
-        return subprocess.run(
-            [sys.executable, str(KOCH / "experiments.py"), *arguments],
-            capture_output=True,
-            text=True,
-            encoding="utf-8",
-            cwd=tmp_path,
-            env=environment,
-            check=False,
-        )
+        monkeypatch.chdir(tmp_path)
+        monkeypatch.setattr(sys, "argv", ["experiments.py", *arguments])
+        code = experiments.main()
+        return subprocess.CompletedProcess(arguments, code, *capsys.readouterr())
 
     return run
 
 
-def test_facts_of_all_experiments(command) -> None:
-    done = command("all", "--facts")
+def test_facts_of_all_experiments(inside) -> None:
+    done = inside("all", "--facts")
     assert done.returncode == 0, done.stderr
     assert done.stderr == ""
     lines = done.stdout.splitlines()
@@ -64,8 +66,23 @@ def test_facts_of_all_experiments(command) -> None:
     assert "limits met (ticks), clear 10+ 81, 9+ 36" in told
 
 
-def test_without_matplotlib_one_line_and_the_facts(command, tmp_path) -> None:
-    done = command("6.1", "--tick", "50", "100")
+def test_without_matplotlib_one_line_and_the_facts(tmp_path) -> None:
+    """As a process of its own, as a person starts it."""
+    hidden = tmp_path / "hidden"
+    hidden.mkdir()
+    message = "No module named 'matplotlib'"
+    text = f'raise ModuleNotFoundError("{message}", name="matplotlib")\n'
+    (hidden / "matplotlib.py").write_text(text, encoding="utf-8")
+    path = os.pathsep.join([str(hidden), str(SOURCE)])
+    done = subprocess.run(
+        [sys.executable, str(KOCH / "experiments.py"), "6.1", "--tick", "50", "100"],
+        capture_output=True,
+        text=True,
+        encoding="utf-8",
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": path, "PYTHONIOENCODING": "utf-8"},
+        check=False,
+    )
     assert done.returncode == 1
     assert done.stderr == "no pictures: matplotlib is missing; pip install matplotlib\n"
     told = {" ".join(line.split()) for line in done.stdout.splitlines()}
@@ -73,9 +90,9 @@ def test_without_matplotlib_one_line_and_the_facts(command, tmp_path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["hidden"]
 
 
-def test_weight_and_limit_can_be_others(command) -> None:
+def test_weight_and_limit_can_be_others(inside) -> None:
     """Ten times the weight: joint 10 moves less; 200 deg/s2 holds where 350 would have been used."""
-    done = command("6.3", "--weight", "50", "--acceleration", "200", "--facts", "--tick", "100")
+    done = inside("6.3", "--weight", "50", "--acceleration", "200", "--facts", "--tick", "100")
     assert done.returncode == 0, done.stderr
     facts = {line[2:46].strip(): line[46:].strip() for line in done.stdout.splitlines()}
     assert float(facts["largest of all joints but 10, both limited"]) <= 200.0
@@ -84,11 +101,10 @@ def test_weight_and_limit_can_be_others(command) -> None:
 
 
 @pytest.mark.parametrize("name", first(1, ["6.3", "6.6"]))
-def test_drawn_where_matplotlib_is(tmp_path, name: str) -> None:
+def test_drawn_where_matplotlib_is(inside, tmp_path, name: str) -> None:
     pytest.importorskip("matplotlib")
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(SOURCE), *sys.path])}
     window = ["--joints", "7", "11", "--window", "5", "6.2"]
-    arguments = [name, "--tick", "100", *window, "--out", str(tmp_path / "new")]
-    subprocess.run([sys.executable, str(KOCH / "experiments.py"), *arguments], env=environment, check=True)
+    done = inside(name, "--tick", "50", *window, "--out", str(tmp_path / "new"))
+    assert done.returncode == 0, done.stderr
     picture = tmp_path / "new" / f"experiment_{name.replace('.', '_')}.png"
     assert picture.read_bytes().startswith(b"\x89PNG")

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from functools import cache
 from itertools import pairwise
+from math import cos, sin
 
 import numpy as np
 import pytest
@@ -23,29 +24,42 @@ ANGLES = np.radians([(0, 0, 0), (0, 0, 0), (-85, 0, 0), (0, 85, 0), (0, 0, 0), (
 JOINT_7, JOINT_11 = 6, 10
 
 
+def turn_about(along: int, angle: float) -> np.ndarray:
+    """Rotation matrix (3, 3) of a turn by an angle about the axis x, y or z (0, 1 or 2)."""
+    found = np.eye(3)
+    i, j = (along + 1) % 3, (along + 2) % 3
+    found[i, i] = found[j, j] = cos(angle)
+    found[j, i] = sin(angle)
+    found[i, j] = -found[j, i]
+    return found
+
+
 def pose_error(square, q: np.ndarray, target: tuple[np.ndarray, Rotation]) -> tuple[np.ndarray, np.ndarray]:
     """Pose difference (6,) of a posture (11,) in the base frame, and its Jacobian (6, 11)."""
     position, rotation = np.zeros(3), np.eye(3)
-    places, directions = [], []
-    for value, axis, offset in zip(q, square.axes, square.offsets, strict=True):
+    places, directions, turns = [], [], []
+    for value, axis, offset in zip(q.tolist(), square.axes, square.offsets, strict=True):
         position = position + rotation @ offset
-        direction = np.eye(3)["xyz".index(axis[-1])] * (-1.0 if axis[-2] == "-" else 1.0)
+        along = "xyz".index(axis[-1])
+        sign = -1.0 if axis[-2] == "-" else 1.0
+        direction = sign * rotation[:, along]
         places.append(position)
-        directions.append(rotation @ direction)
-        if axis.startswith("slide"):
-            position = position + rotation @ direction * value
+        directions.append(direction)
+        turns.append(not axis.startswith("slide"))
+        if turns[-1]:
+            rotation = rotation @ turn_about(along, sign * value)
         else:
-            rotation = rotation @ Rotation.from_rotvec(value * direction).as_matrix()
+            position = position + direction * value
     position = position + rotation @ square.tool
-    turns = [not axis.startswith("slide") for axis in square.axes]
-    columns = [
-        np.concatenate([np.cross(z, position - o), z]) if turn else np.concatenate([z, np.zeros(3)])
-        for z, o, turn in zip(directions, places, turns, strict=True)
-    ]
+    jacobian = np.zeros((6, 11))
+    (x, y, z), (u, v, w) = (position - places).T, np.transpose(directions)
+    # A turn moves the tool by the cross product of its axis and the way from there to the tool.
+    jacobian[:3] = np.where(turns, (v * z - w * y, w * x - u * z, u * y - v * x), (u, v, w))
+    jacobian[3:] = np.where(turns, (u, v, w), 0.0)
     difference = np.concatenate(
         [target[0] - position, (target[1] * Rotation.from_matrix(rotation.T)).as_rotvec()]
     )
-    return difference, np.array(columns).T
+    return difference, jacobian
 
 
 def least_step(gradient, jacobian, difference, lower, upper) -> np.ndarray:
@@ -53,7 +67,8 @@ def least_step(gradient, jacobian, difference, lower, upper) -> np.ndarray:
     held: dict[int, float] = {}
     for _ in range(50):
         rows = np.vstack([jacobian, np.eye(11)[list(held)]]) if held else jacobian
-        system = np.block([[np.diag(WEIGHTS), rows.T], [rows, np.zeros((len(rows), len(rows)))]])
+        system = np.zeros((11 + len(rows),) * 2)
+        system[:11, :11], system[:11, 11:], system[11:, :11] = np.diag(WEIGHTS), rows.T, rows
         solution = np.linalg.solve(system, np.concatenate([-gradient, difference, list(held.values())]))
         step, forces = solution[:11], solution[17:]
         over = np.maximum(step - upper, lower - step)

@@ -143,6 +143,14 @@ def new_tab(browser, scripts):
     return page
 
 
+@pytest.fixture
+def undrawn_tab(browser):
+    """An empty tab of its own, whose pages draw no scene."""
+    page = new_tab(browser, [UNDRAWN])
+    yield page
+    page.context.close()
+
+
 @pytest.fixture(scope="session")
 def open_page(browser):
     """`open_page(path, width=, height=, scheme=, still=, before=, where=, drawn=)`: the page of a file.

@@ -157,10 +157,20 @@ def test_curves_seek(shown):
 def test_light_and_dark(made, open_page):
     means = {}
     for scheme in ("light", "dark"):
-        with open_page(made(), scheme=scheme) as page:
+        with open_page(made(), scheme=scheme, drawn=False) as page:
             assert page.run("() => document.documentElement.dataset.theme") == scheme
             means[scheme] = np.array(page.colours("body")["mean"])
     assert (means["light"] - means["dark"]).min() > DARKER
+
+
+def test_the_scene_is_light_and_dark_too(shown):
+    means = []
+    for theme in ("dark", "light"):
+        shown.page.keyboard.press("t")
+        assert shown.run("() => document.documentElement.dataset.theme") == theme
+        shown.settle()
+        means.append(np.array(shown.colours("#scene > canvas")["mean"]))
+    assert (means[1] - means[0]).min() > DARKER
 
 
 @pytest.mark.parametrize(
@@ -230,7 +240,7 @@ def test_where_motion_is_welcome_it_plays_by_itself_and_asks_for_itself_alone(ma
     with open_page(path, where="", drawn=False) as page:
         page.page.wait_for_timeout(200)
         assert page.run("() => irlx.frame") == 0
-    with open_page(path, still=False, where="") as page:
+    with open_page(path, still=False, where="", drawn=False) as page:
         page.page.wait_for_timeout(300)
         page.page.wait_for_function("() => irlx.frame > 3")
         asked = [url for url in page.requests if not url.startswith("data:")]

@@ -33,7 +33,7 @@ def page(run, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def shown(page, open_page):
-    with open_page(page) as opened:
+    with open_page(page, drawn=False) as opened:
         yield opened
 
 
