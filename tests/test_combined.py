@@ -184,10 +184,10 @@ def nearest_by_obstacle(run: irlx.Run) -> dict[str, np.ndarray]:
     """Distance (M,) m of the arm from the wall and from the frame in the rows of the circle."""
     circle = next(r.block.id for r in run.stream.records if getattr(r.block, "course", None) is not None)
     found: dict[str, np.ndarray] = {}
-    for (_, other), rows in nearest(run, FOLDER / "combined.toml").items():
+    for (_, other), rows in nearest(run, FOLDER / "combined.toml", run.block == circle).items():
         name = "window" if other.startswith("window") else other
         found[name] = np.minimum(found.get(name, np.inf), rows)
-    return {name: rows[run.block == circle] for name, rows in found.items()}
+    return found
 
 
 @pytest.mark.req("TRF-13")

@@ -25,9 +25,9 @@ BEGIN
   MOVE LIN p SPEED := 1500, ACC := 9000;
   MOVE LIN home SPEED := 50;
   OUT_1 := TRUE;
-  MOVE LIN POSITION(3000, 0, 0);
+  MOVE LIN POSITION(1500, 0, 0);
   MOVE LIN q;
-  MOVE LIN POSITION(0, 0, 5000);
+  MOVE LIN POSITION(0, 0, 2000);
 ENDPROGRAM;
 """
 CELL = '[robot]\nmodel = "arm7"\n[signals.outputs]\n'
@@ -37,15 +37,21 @@ def motion_codes(found: list[irlx.Diagnostic]) -> list[tuple[int, str]]:
     return [(one.place.line, one.code) for one in found if one.place is not None and one.is_error]
 
 
-@pytest.fixture
-def slow(tmp_path: Path) -> Path:
-    (tmp_path / "slow.toml").write_text('[robot]\nmodel = "arm7"\n[motion]\ntick_ms = 20\n')
-    (tmp_path / "slow.irl").write_text(SLOW)
-    return tmp_path / "slow.irl"
+@pytest.fixture(scope="module")
+def slow(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("slow")
+    (folder / "slow.toml").write_text('[robot]\nmodel = "arm7"\n[motion]\ntick_ms = 20\n')
+    (folder / "slow.irl").write_text(SLOW)
+    return folder / "slow.irl"
 
 
-def test_all_that_is_wrong_is_told_in_one_pass(slow) -> None:
-    found = irlx.check(slow, motion=True)
+@pytest.fixture(scope="module")
+def found(slow) -> list[irlx.Diagnostic]:
+    """What a dry run says of the program."""
+    return irlx.check(slow, motion=True)
+
+
+def test_all_that_is_wrong_is_told_in_one_pass(found) -> None:
     codes = [(one.place.line, one.code) for one in found if one.place is not None]
     assert (6, "IRL445") in codes
     assert [place for place in codes if place[1].startswith("IRL52")] == [(9, "IRL520"), (11, "IRL520")]
@@ -56,11 +62,11 @@ def test_it_is_off_unless_asked_for(slow) -> None:
     assert [one.code for one in irlx.check(slow)] == ["IRL205"]
 
 
-def test_the_command_line_finds_the_same(slow, capsys) -> None:
+def test_the_command_line_finds_the_same(slow, found, capsys) -> None:
     assert main(["check", str(slow), "--motion", "--format", "json"]) == 1
     told = json.loads(capsys.readouterr().out)
     assert [(one["line"], one["code"]) for one in told] == [
-        (one.place.line, one.code) for one in irlx.check(slow, motion=True) if one.place is not None
+        (one.place.line, one.code) for one in found if one.place is not None
     ]
 
 

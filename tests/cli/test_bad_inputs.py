@@ -163,13 +163,14 @@ def test_programs_that_the_robot_cannot_execute(inside, folder, names, declarati
 @pytest.mark.req("LANG-72")
 def test_a_pose_out_of_reach_in_the_third_move(inside, folder, names):
     text = """PROGRAM p;
-VAR POSITION: near := (11400, 1000, 3500);
+VAR POSITION: near := (441, 160, 324);
 BEGIN
-  MOVE LIN near, POSITION(11500, 1000, 3500);
-  MOVE LIN POSITION(95000, 1000, 3500);
+  MOVE LIN near, POSITION(441, 200, 324);
+  MOVE LIN POSITION(1500, 200, 324);
 ENDPROGRAM
 """
     write(folder, "p.irl", text)
+    write(folder, "p.toml", '[robot]\nmodel = "arm7"\n[motion]\ntick_ms = 20\n')
     done = inside("run", "p.irl", "-o", "out.irdata", "-o", "out.csv")
     assert done.returncode == 1
     assert done.stdout == ""
@@ -178,7 +179,7 @@ ENDPROGRAM
     assert "joint_" in message
     assert "out of reach" in message
     assert "leaves" in message
-    assert "MOVE LIN POSITION(95000, 1000, 3500);" in done.stderr
+    assert "MOVE LIN POSITION(1500, 200, 324);" in done.stderr
     # The asked names only ever hold complete streams.
     assert names(folder) == ["out.partial.csv", "out.partial.irdata", *UNCHANGED]
     assert "marked incomplete: out.partial.irdata" in done.stderr

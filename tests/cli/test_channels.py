@@ -10,6 +10,7 @@ import pytest
 
 import irlx
 from irlx.cli.standard_channels import OutputLost, _Descriptor
+from irlx.cli.stopping import Stopped, heard_signal, heed_signals, stopped_code
 from irlx.streams import read_stream
 
 pytestmark = pytest.mark.req("QA-09")
@@ -20,15 +21,15 @@ BEGIN MOVE LIN near; WRITE('ready'); READ(i); ENDPROGRAM
 CALLS = [
     ("check p.irl", ">&-", 0, ""),
     ("check p.irl", ">/dev/full", 2, "error IRL003: cannot write stdout: no space left on device"),
-    ("check bad.irl", "2>&-", 1, ""),
-    ("check bad.irl", "2>/dev/full", 1, ""),
+    ("explain IRL000", "2>&-", 2, ""),
+    ("explain IRL000", "2>/dev/full", 2, ""),
     ("check bad.irl", "<&- >&- 2>&-", 1, ""),
     ("check bad.irl", ">/dev/full 2>/dev/full", 2, ""),
     ("--help", ">/dev/full", 2, "error IRL003: cannot write stdout: no space left on device"),
     ("explain IRL203", "2>&1 >&- | true", 0, ""),
     ("fmt - <p.irl", ">/dev/full", 2, "error IRL003: cannot write stdout: no space left on device"),
     ("fmt -", "<&-", 1, "<stdin>:1:1: error IRL117: the file holds no program"),
-    ("check nowhere.irl", "2>&1 >/dev/null | true", 2, ""),
+    ("explain IRL000", "2>&1 >/dev/null | true", 2, ""),
 ]
 
 
@@ -97,7 +98,23 @@ def test_what_is_lost_is_told_once():
         os.close(full)
 
 
-@pytest.mark.parametrize("which", [signal.SIGTERM, signal.SIGHUP], ids=lambda which: which.name)
+def test_all_three_signals_are_heard_alike(monkeypatch):
+    """What becomes of a run then, the next test shows by one of them."""
+    given: dict = {}
+    monkeypatch.setattr(signal, "getsignal", lambda number: given.get(number, signal.SIG_DFL))
+    monkeypatch.setattr(signal, "signal", given.__setitem__)
+    heed_signals()
+    assert set(given) == {signal.SIGINT, signal.SIGTERM, signal.SIGHUP}
+    for number, listener in given.items():
+        with pytest.raises(Stopped) as caught:
+            listener(number, None)
+        assert (caught.value.number, stopped_code(caught.value)) == (number, 128 + number)
+        assert heard_signal() is not None
+
+
+@pytest.mark.parametrize(
+    "which", [signal.SIGTERM, pytest.param(signal.SIGHUP, marks=pytest.mark.slow)], ids=str
+)
 def test_other_signals_end_a_run_as_ctrl_c_does(folder, environment, names, which):
     (folder / "p.irl").write_text(WAITING)
     call = [sys.executable, "-m", "irlx", "run", "p.irl", "-o", "p.csv", "--quiet"]

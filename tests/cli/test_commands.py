@@ -18,9 +18,10 @@ from irlx.streams.formats import read_stream
 
 
 @pytest.mark.req("QA-09")
-def test_run_twice_gives_the_same_bytes(command, inside, folder, names):
+def test_run_twice_gives_the_same_bytes(inside, folder, names):
+    """In another process: test_surroundings.py."""
     outputs = ["-o", "a.irdata", "-o", "a.npz", "-o", "a.csv"]
-    done = command("run", "p.irl", *outputs)
+    done = inside("run", "p.irl", *outputs)
     assert (done.returncode, done.stderr) == (0, "")
     assert "p.irl: complete, verified, " in done.stdout
     written = [line.split()[1] for line in done.stdout.splitlines() if line.startswith("written")]
@@ -245,7 +246,8 @@ def test_colour_at_a_terminal_only_where_wanted(folder, environment):
 
 @pytest.mark.req("QA-09")
 def test_a_reader_that_goes_away(folder, environment):
-    call = f"{sys.executable} -m irlx run p.irl --json | true"
+    """Of what a run writes: test_files.py."""
+    call = f"{sys.executable} -m irlx explain | true"
     done = subprocess.run(
         ["sh", "-c", call],
         cwd=folder,

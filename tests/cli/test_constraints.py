@@ -19,7 +19,7 @@ model = "koch11"
 speed = [{speed}, {speed}, {speed}, {speed}, {speed}, {speed}, {speed}, {speed}, {speed}, 1000, {speed}]
 acceleration = [300, 300, 300, 300, 300, 300, 300, 300, 300, 3000, 300]
 [motion]
-tick_ms = 20
+tick_ms = 40
 speed = 1000
 acc = 2000
 [[constraint]]
@@ -127,12 +127,12 @@ def test_a_stream_that_breaks_a_condition_fails(tmp_path: Path) -> None:
     run.save(tmp_path / "p.npz")
     with np.load(tmp_path / "p.npz") as file:
         arrays = dict(file)
-    arrays["q"][20, 2] += 2.0 * CONDITION
+    arrays["q"][8, 2] += 2.0 * CONDITION
     np.savez(tmp_path / "p.npz", **arrays)
     report = irlx.verify(tmp_path / "p.npz", cell=tmp_path / "p.toml")
     failed = {check.name for check in report.failed}
     assert "constraints" in failed
-    assert report["constraints"].first.tick == 20
+    assert report["constraints"].first.tick == 8
 
 
 @irlx.register

@@ -12,6 +12,7 @@ import irlx
 from corrected import ARM, PLANNED, Corrected, Tools, corrected, files
 from irlx.job import prepare
 from irlx.pipeline import Execution
+from long_run import first
 
 DECLARED = """VAR
   POSITION: store := (440, 260, 325), next := (440, 200, 325), third := (500, 200, 325);
@@ -153,7 +154,7 @@ def square(folder: Path, tick: int) -> Path:
     return files(folder, body, LONG_ARM.format(tick=tick), SQUARE)
 
 
-@pytest.mark.parametrize("sensor", [ramp, turned_step])
+@pytest.mark.parametrize("sensor", first(1, [ramp, turned_step]))
 def test_koch11(tmp_path, sensor):
     assert corrected(square(tmp_path, 50), sensor).report.delayed_ticks > 0
 
@@ -164,7 +165,7 @@ def test_koch11_campaign(tmp_path, sensor):
     corrected(square(tmp_path, 10), SENSORS.get(sensor) or white())
 
 
-@pytest.mark.parametrize("tick", [pytest.param(1, marks=pytest.mark.slow), 2, 10])
+@pytest.mark.parametrize("tick", first(1, [10, 2, 1]))
 def test_a_small_correction_is_reached_exactly(run, tick):
     found = run("moves", SENSORS["constant"], tick)
     reached = np.all(found.correction == [0.001, 0.0005, 0, 0, 0, 0.002], axis=1)

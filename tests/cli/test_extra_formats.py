@@ -137,7 +137,11 @@ def test_an_input_inside_the_folder_is_not_overwritten(inside, folder):
 
 
 def test_a_run_that_ends_early_keeps_a_partial_bag(inside, folder, names):
-    text = (folder / "p.irl").read_text().replace("MOVE LIN home;", "MOVE LIN POSITION(95000, 1000, 3500);")
+    text = (
+        (folder / "p.irl")
+        .read_text()
+        .replace("MOVE LIN home;", "MOVE LIN POSITION(1 / (R_ACC - R_ACC), 0, 0);")
+    )
     (folder / "p.irl").write_text(text)
     done = inside("run", "p.irl", "-o", "a.rosbag", "-o", "a.parquet")
     assert done.returncode == 1

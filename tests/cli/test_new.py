@@ -11,6 +11,7 @@ import irlx
 from irlx.cell.external import external_section
 from irlx.cell.load import load_cell
 from irlx.cell.robot_data import robot_data_folder
+from long_run import first
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -79,7 +80,7 @@ def test_a_robot_by_name(inside, folder, name):
 
 
 @needs_robot_data
-@pytest.mark.parametrize("name", ["panda", "ur5"])
+@pytest.mark.parametrize("name", first(1, ["panda", "ur5"]))
 def test_robots_of_the_extra_by_their_urdf(inside, folder, name):
     section = external_section(name)
     urdf = robot_data_folder() / section.model

@@ -61,7 +61,7 @@ tick_ms = 100
 """
 FINE = {"IRL436"}
 """Codes of what ticks of 50 ms would not show."""
-LONG_TICK = 50.0
+LONG_TICK = 100.0
 """Of cells on pages that name no tick, ms: what they show does not depend on it, what it costs does."""
 STEPS = 100_000
 """More than any page needs: endless loops end sooner than by default."""

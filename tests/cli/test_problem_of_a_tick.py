@@ -10,6 +10,7 @@ import pytest
 
 import irlx
 from irlx.cli.main import main
+from long_run import first
 
 pytestmark = pytest.mark.req("TRF-01")
 
@@ -26,7 +27,7 @@ def solution(problem: dict) -> np.ndarray:
     return np.linalg.solve(matrix, right)[:n]
 
 
-@pytest.mark.parametrize("tick", [12, 30])
+@pytest.mark.parametrize("tick", first(1, [12, 30]))
 def test_its_solution_is_the_first_newton_step(tick: int) -> None:
     """Ticks in which no bound holds: the first step leaves what is of second order in its length."""
     run = irlx.run(PROGRAM, tick_ms=20, explain_tick=tick)
@@ -81,8 +82,9 @@ def test_it_is_printed_and_in_the_json(tmp_path: Path, capsys: pytest.CaptureFix
 
 
 def test_motions_of_the_joints_have_none() -> None:
-    run = irlx.run(PROGRAM.with_name("reconfiguration.irl"), explain_tick=5)
+    program, tick_ms = PROGRAM.with_name("reconfiguration.irl"), 100
+    run = irlx.run(program, tick_ms=tick_ms, explain_tick=5)
     assert run.explanation.problem is not None
     last = next(r for r in run.stream.records if r.block.__class__.__name__ == "ReconfigureBlock")
-    run = irlx.run(PROGRAM.with_name("reconfiguration.irl"), explain_tick=last.tick + 3)
+    run = irlx.run(program, tick_ms=tick_ms, explain_tick=last.tick + 3)
     assert run.explanation.problem is None

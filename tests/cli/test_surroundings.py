@@ -135,9 +135,11 @@ def test_one_thread_whatever_is_asked_for(monkeypatch):
     assert os.environ["HOME"] == "/"
 
 
+PLAIN = {"TZ": "nonsense", "LC_ALL": "C", "PYTHONUTF8": "0"}
+FEW = {"OPENBLAS_NUM_THREADS": "2", "HOME": "/proc"}
 SETTINGS = [
-    (["-O", "-X", "dev"], {"PYTHONHASHSEED": "0", "TZ": "nonsense", "LC_ALL": "C", "PYTHONUTF8": "0"}),
-    (["-OO", "-W", "error"], {"PYTHONHASHSEED": "1", "OPENBLAS_NUM_THREADS": "2", "HOME": "/proc"}),
+    (["-OO", "-W", "error"], {"PYTHONHASHSEED": "1", **PLAIN, **FEW}),
+    pytest.param(["-O", "-X", "dev"], {"PYTHONHASHSEED": "0", **PLAIN}, marks=pytest.mark.slow),
 ]
 
 

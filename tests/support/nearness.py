@@ -27,16 +27,22 @@ Pose = tuple[np.ndarray, np.ndarray]
 """Positions (3,) m and rotation (3, 3)."""
 
 
-def nearest(run: irlx.Run, cell: Path) -> dict[tuple[str, str], np.ndarray]:
-    """Distance (N,) m, below 0 where they overlap, of every link that moves from every obstacle."""
+def nearest(
+    run: irlx.Run, cell: Path, chosen: np.ndarray | slice = slice(None)
+) -> dict[tuple[str, str], np.ndarray]:
+    """Distance (N,) m, below 0 where they overlap, of every link that moves from every obstacle.
+
+    In all rows of the run, or in those that are chosen.
+    """
+    chain = run.q[chosen]
     told = tomllib.loads(cell.read_text(encoding="utf-8"))
     boxes = {one["name"]: one for one in told["obstacle"] if one["shape"] != "group"}
     placed = {name: (_shape(one), _transform(*_pose(one))) for name, one in boxes.items()}
     solids, joints = _arm(told["robot"]["model"])
     found: dict[tuple[str, str], np.ndarray] = {
-        (link, name): np.full(len(run.q), np.inf) for link in solids for name in placed
+        (link, name): np.full(len(chain), np.inf) for link in solids for name in placed
     }
-    for row, q in enumerate(run.q):
+    for row, q in enumerate(chain):
         poses = _links(joints, dict(zip(run.stream.header.joint_names, q, strict=True)))
         for link, parts in solids.items():
             for shape, at in parts:

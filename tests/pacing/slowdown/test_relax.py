@@ -16,7 +16,7 @@ from irlx.pacing.slowdown.elastic_walk import Passage
 from irlx.pacing.slowdown.grid import STEP, PathGrid, Spacing, path_grid
 from irlx.pacing.slowdown.model import Model, null_spaces
 from irlx.pacing.slowdown.near_knots import NearKnots
-from irlx.pacing.slowdown.relax import Smoothing, _Relaxation, _solve_blocks, relax
+from irlx.pacing.slowdown.relax import _GOLDEN, Smoothing, _Relaxation, _solve_blocks, relax
 from irlx.pacing.slowdown.reserve import RESERVE, reserved
 from long_run import first
 from machines import least_motion, machine
@@ -310,3 +310,28 @@ def test_what_is_near_is_looked_for_where_something_is_kept_clear(monkeypatch) -
     assert np.array_equal(asked[0], of.walk)
     # The linear room that was lacking is made.
     assert np.max(np.abs(kept - alone)) > 1e-4
+
+
+@pytest.mark.parametrize("lowest", [0.0, 0.003, 0.25, 0.381966, 0.5, 0.99, 1.0])
+def test_sections_end_where_they_do_when_no_sum_is_used_again(monkeypatch, lowest):
+    """Bit for bit, at half the sums."""
+    asked = []
+
+    def bowl(_, change):
+        asked.append(float(change[0, 0]))
+        return 1.0 + (asked[-1] - lowest) ** 2
+
+    monkeypatch.setattr(_Relaxation, "_sum", bowl)
+    relaxation = _Relaxation.__new__(_Relaxation)
+    good, worse = np.zeros((1, 1)), np.ones((1, 1))
+    found = float(relaxation._lowest_between(good, worse)[0, 0])
+    low, high = 0.0, 1.0
+    for _ in range(12):
+        inner, outer = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
+        if 1.0 + (inner - lowest) ** 2 < 1.0 + (outer - lowest) ** 2:
+            high = outer
+        else:
+            low = inner
+    assert found == 0.5 * (low + high)
+    # Where two sums are alike both are made anew, as in the middle.
+    assert lowest == 0.5 or len(asked) <= 16

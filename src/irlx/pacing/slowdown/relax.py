@@ -38,6 +38,8 @@ _ACTIVE_ROUNDS = 40
 _LONGEST_STEP = 0.2
 _GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 _SECTIONS = 12
+_SURE = 1e-9
+"""Relative difference of two sums above which a rounding of their places does not change which is less."""
 _ONTO_PATH_ROUNDS = 2
 _SETTLED = 1e-4
 
@@ -135,10 +137,11 @@ class _Relaxation:
             if all(np.array_equal(a, b) for a, b in zip(found, active, strict=True)):
                 best = change
                 break
-            if self._sum(change) > least:
+            total = self._sum(change)
+            if total > least:
                 change = self._lowest_between(best, change)
-                found = self._hinges(change)
-            best, least = min((best, least), (change, self._sum(change)), key=lambda found: found[1])
+                found, total = self._hinges(change), self._sum(change)
+            best, least = min((best, least), (change, total), key=lambda found: found[1])
             active = found
         change = best
         largest = float(np.max(np.abs(change), initial=0.0))
@@ -151,24 +154,38 @@ class _Relaxation:
         """
         way = change - good
         low, high = 0.0, 1.0
+        kept_inner: float | None = None
+        kept_outer: float | None = None
         for _ in range(_SECTIONS):
             inner, outer = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
-            if self._sum(good + inner * way) < self._sum(good + outer * way):
-                high = outer
+            at_inner = self._sum(good + inner * way) if kept_inner is None else kept_inner
+            at_outer = self._sum(good + outer * way) if kept_outer is None else kept_outer
+            if abs(at_inner - at_outer) <= _SURE * max(at_inner, at_outer):
+                at_inner, at_outer = self._sum(good + inner * way), self._sum(good + outer * way)
+            # One of the points comes again in the next section, but for a rounding.
+            if at_inner < at_outer:
+                high, kept_inner, kept_outer = outer, None, at_inner
             else:
-                low = inner
+                low, kept_inner, kept_outer = inner, at_outer, None
         return good + 0.5 * (low + high) * way
 
     def _sum(self, change: Array) -> float:
         """What is minimised, at a change (N + 1, f) of the postures."""
+        # Much of the time of a relaxation is spent here, on new arrays: old ones are used again.
         q, w = self._q + change, self._weights
-        before, here, after = self._second
-        bent = before[:, None] * q[:-2] + here[:, None] * q[1:-1] + after[:, None] * q[2:]
-        steps = np.diff(q, axis=0)
-        over = np.maximum(steps - self._fastest, 0.0) + np.maximum(self._slowest - steps, 0.0)
-        out = np.maximum(q - self._upper, 0.0) + np.maximum(self._lower - q, 0.0)
-        squares = (bent**2).sum(axis=0) + (self._attraction[:, None] * (q - self._walked) ** 2).sum(axis=0)
-        squares += self._mu * (over**2).sum(axis=0) + _POSITION_PRICE * (out**2).sum(axis=0)
+        before, here, after = (factor[:, None] for factor in self._second)
+        bent = before * q[:-2]
+        bent += here * q[1:-1]
+        bent += after * q[2:]
+        bent *= bent
+        away = q - self._walked
+        away *= away
+        away *= self._attraction[:, None]
+        squares = bent.sum(axis=0) + away.sum(axis=0)
+        out = _POSITION_PRICE * _beyond(q, self._lower, self._upper)
+        if self._mu > 0.0:
+            out += self._mu * _beyond(q[1:] - q[:-1], self._slowest, self._fastest)
+        squares += out
         lacking = 0.0
         if self._near is not None:
             lacking = float(self._near_price @ np.maximum(-self._near.room_after(change), 0.0) ** 2)
@@ -247,6 +264,16 @@ class _Relaxation:
 def _reduced(left: Array, price: Array, right: Array) -> Array:
     """L' diag(p) R of every knot: (N, f, r), (N, f), (N, f, s) -> (N, r, s)."""
     return np.asarray((left * price[:, :, None]).transpose(0, 2, 1) @ right)
+
+
+def _beyond(values: Array, lower: Array, upper: Array) -> Array:
+    """Sum (f,) over the rows of the squares of what values (N, f) are off their bounds."""
+    over, under = values - upper, lower - values
+    np.maximum(over, 0.0, out=over)
+    np.maximum(under, 0.0, out=under)
+    over += under
+    over *= over
+    return np.asarray(over.sum(axis=0))
 
 
 def _second_differences(widths: Array) -> tuple[Array, Array, Array]:
