@@ -28,7 +28,7 @@ def run(tmp_path_factory):
 
 def test_forward_kinematics_of_the_page(run, open_page, tmp_path):
     run.save(tmp_path / "p.html")
-    with open_page(tmp_path / "p.html") as shown:
+    with open_page(tmp_path / "p.html", drawn=False) as shown:
         assert shown.run("() => irlx.frames") == len(run.t)
         poses = np.array(shown.run("() => irlx.data.frames.tick.map((_, k) => irlx.toolPose(k))"))
         assert shown.requests == [(tmp_path / "p.html").as_uri()]
