@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import irlx
+from long_run import first
 
 pytestmark = pytest.mark.req("TRF-21")
 
@@ -92,7 +93,7 @@ def judged(folder: Path, robot: str, seed: int) -> str:
     return code
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", first(4, sorted(ROBOTS, key=lambda name: name.endswith("position"))))
 def test_what_runs_passes(name: str, tmp_path: Path) -> None:
     for seed in range(QUICK):
         judged(tmp_path, ROBOTS[name], seed)

@@ -39,7 +39,7 @@ pytestmark = [pytest.mark.req("TRF-05"), pytest.mark.req("TRF-15"), pytest.mark.
 
 TICKS = [0.25, 1.0, 10.0, 50.0]
 ROBOTS = ["arm7", "panda", "rail6", "koch11"]
-QUICK, LONG = 2, 200
+QUICK, LONG = 1, 200
 KINDS = ["fibre", "fibre", "off", "off", "near", "beyond", "same", "residue"]
 POSE, OVERSHOOT, TURNING, AT_REST = 1e-6, 1e-3, 1e-2, 1e-6
 LONGEST_CPU = 30.0

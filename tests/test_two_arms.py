@@ -128,7 +128,7 @@ def test_frozen_joints_of_the_left_shoulder_stand_bit_by_bit() -> None:
 def test_the_left_elbow_keeps_off_the_lamp() -> None:
     begin = rows_of(line_of("MOVE_INC LIN POSITION(0, 0, 60);")).start
     end = rows_of(line_of("RECONFIGURATION"), "ReconfigureBlock").start
-    least = min(rows[begin:end].min() for rows in nearest(run(), CELL).values())
+    least = min(rows.min() for rows in nearest(run(), CELL, slice(begin, end)).values())
     assert least >= 0.050
 
 

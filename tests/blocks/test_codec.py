@@ -1,7 +1,7 @@
 import json
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import HealthCheck, given, settings
 
 from drawn_blocks import blocks
 from irlx.blocks import (
@@ -21,10 +21,25 @@ def all_kinds(base: type) -> set[type]:
     return {base for _ in [0]}.union(*(all_kinds(kind) for kind in base.__subclasses__()))
 
 
+SLOW_TO_DRAW = settings(suppress_health_check=[HealthCheck.too_slow], deadline=None)
+"""Both go by the clock, whatever else the machine does."""
+
+
 @pytest.mark.req("STR-03")
-@settings(max_examples=40)
+@settings(SLOW_TO_DRAW, max_examples=20)
 @given(blocks)
 def test_blocks_survive_json(block: Block) -> None:
+    survives_json(block)
+
+
+@pytest.mark.slow
+@settings(SLOW_TO_DRAW, max_examples=1000)
+@given(blocks)
+def test_many_blocks_survive_json(block: Block) -> None:
+    survives_json(block)
+
+
+def survives_json(block: Block) -> None:
     text = json.dumps(block_to_plain(block), allow_nan=False)
     back = block_from_plain(json.loads(text))
     assert back == block

@@ -91,7 +91,7 @@ def test_one_mistake_is_named_where_it_is(short_programs, mistake, count):
 
 
 @pytest.mark.req("LANG-05")
-@pytest.mark.parametrize("count", [1, 2, 4, 10])
+@pytest.mark.parametrize("count", [1, 10, *(pytest.param(count, marks=pytest.mark.slow) for count in (2, 4))])
 def test_mistakes_far_apart(programs, count):
     check_draws(programs[:2], count, random.Random(count), DRAWS)
 

