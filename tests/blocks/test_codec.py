@@ -33,7 +33,7 @@ def test_blocks_survive_json(block: Block) -> None:
 
 
 @pytest.mark.slow
-@settings(SLOW_TO_DRAW, max_examples=1000)
+@settings(SLOW_TO_DRAW, max_examples=300)
 @given(blocks)
 def test_many_blocks_survive_json(block: Block) -> None:
     survives_json(block)
