@@ -271,7 +271,8 @@ ENDPROGRAM
     run = irlx.run(program(text))
     (finding,) = run.diagnostics
     assert (finding.code, finding.place.line, finding.data["status"]) == ("IRL312", 6, 4)
-    assert irlx.run(program(text.replace("4 * i", "0 * i"))).diagnostics == ()
+    plain = text.replace("4 * i", "0 * i").replace("  MOVE PTP t;\n", "")
+    assert irlx.run(program(plain)).diagnostics == ()
 
 
 @pytest.mark.req("LANG-53")
