@@ -271,6 +271,19 @@ def test_nearest_posture_reaches_the_pose_and_beats_random_starts(arm7, seed: in
     np.testing.assert_array_equal(found, nearest_posture(*args).q)
 
 
+@pytest.mark.req("MOT-05")
+def test_a_posture_at_the_end_of_a_long_way_along_its_pose_is_found(koch11, monkeypatch) -> None:
+    """From both starts some 50 steps, more than a tick may take."""
+    monkeypatch.setattr("irlx.transform.posture_search.RESTARTS", 1)
+    rng = np.random.default_rng([2, 5])
+    goal = rng.uniform(np.maximum(koch11.lower, -3.0), np.minimum(koch11.upper, 3.0))
+    pose = koch11.kinematics.tool_pose(goal)
+    args = (koch11.q, koch11.weights, limits_of(koch11), np.ones(11, dtype=bool))
+    found = nearest_posture(koch11.kinematics, ProxQpSolver(), *pose, *args).q
+    assert found is not None
+    np.testing.assert_allclose(koch11.kinematics.tool_pose(found)[1], pose[1], rtol=0, atol=1e-9)
+
+
 @pytest.mark.req("TRF-12")
 def test_nearest_posture_keeps_frozen_joints(koch11) -> None:
     free = np.ones(11, dtype=bool)

@@ -1,13 +1,15 @@
 """The posture flow: stays on the pose and inside, comes nearer with every point, ends at an optimum."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.optimize import minimize
 
 from irlx.robot.limits import JointLimits
-from irlx.transform.posture_flow import FlowEnd, posture_flow, projected_gradient
+from irlx.transform.fibre import Fibre, Tangent
+from irlx.transform.posture_flow import FlowEnd, _shortened, _why, posture_flow, projected_gradient
 from irlx.transform.qp.dual import DualSolver
 from irlx.transform.qp.proxqp import ProxQpSolver
 from long_run import first
@@ -320,3 +322,43 @@ def test_a_posture_that_is_not_reached_is_not_called_so(arm7, away):
     assert len(flow.points) == 1
     np.testing.assert_allclose(flow.remaining, away, rtol=0, atol=1e-15)
     assert flow_of(arm7, arm7.q, arm7.q, free).reached
+
+
+@pytest.mark.req("TRF-15")
+def test_a_joint_that_came_to_its_limit_stays_on_it_to_the_last_bit(koch11):
+    """Corrections back onto the pose move the others."""
+    konf = koch11.q + np.random.default_rng(8).normal(size=11) * 0.3
+    upper = koch11.upper.copy()
+    joint = 7
+    upper[joint] = koch11.q[joint] + 0.02
+    limits = JointLimits.unlimited(11).with_pair("position", koch11.lower, upper)
+    iterates = flow_of(koch11, koch11.q, konf, limits=limits).iterates
+    came = int(np.argmax(upper[joint] - iterates[:, joint] <= 1e-6))
+    assert 0 < came < len(iterates) - 4
+    assert np.all(iterates[came:, joint] == upper[joint])
+
+
+def test_a_step_that_leads_too_far_is_halved_though_a_joint_is_frozen(koch11):
+    """Six times the way to the nearest posture nearby, then three times, then one and a half times it."""
+    free = np.arange(11) != 4
+    konf = koch11.q + np.random.default_rng(3).normal(size=11) * 0.01
+    bounds = (koch11.lower, koch11.upper)
+    fibre = Fibre(koch11.kinematics, koch11.pose(koch11.q), konf, koch11.weights, bounds, free)
+    tangent = fibre.tangent(koch11.q)
+    newton = -tangent.basis @ (tangent.basis.T @ tangent.gradient)
+    assert newton[4] == 0.0
+    new, after = _shortened(fibre, koch11.q, tangent, 6.0 * newton)
+    # On a parabola 6 and 3 times the way to its bottom lie higher than its start, 1.5 times does not.
+    np.testing.assert_allclose(new - koch11.q, 1.5 * newton, atol=0.1 * np.max(np.abs(newton)))
+    assert fibre.distance(new) < fibre.distance(koch11.q)
+    assert after.projected < tangent.projected
+
+
+@pytest.mark.parametrize(("least", "end"), [(0.9e-4, FlowEnd.SINGULAR), (1.1e-4, FlowEnd.STALLED)])
+def test_a_flow_ends_singular_by_the_ratio_of_least_and_largest(least, end):
+    """The largest singular value is 1, the next one 0.1."""
+    tangent = Tangent(
+        np.ones(4, bool), np.zeros((4, 1)), np.eye(3, 4) * [1.0, 0.1, least, 0], np.ones(4), 1.0
+    )
+    fibre = SimpleNamespace(kinematics=SimpleNamespace(row_scale=np.ones(3)), rank=lambda *_: 3)
+    assert _why(fibre, np.zeros(4), tangent) is end

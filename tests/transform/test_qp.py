@@ -266,3 +266,11 @@ def test_a_right_guess_saves_the_dual_solver_all_steps(monkeypatch) -> None:
 def test_rows_that_depend_on_each_other_are_no_guess(rows, lost: bool) -> None:
     matrix = np.array(rows)
     assert _lost(matrix @ matrix.T, len(rows)) is lost
+
+
+def test_rounding_is_judged_by_the_size_of_what_the_rows_reach() -> None:
+    """Two rows of the same direction, one asks for 1E-10 more than the other, of a thousand: they agree."""
+    rows, lower = np.array([[1.0, 0.0], [1.0, 0.0]]), np.array([1e3, 1e3 + 1e-10])
+    found = sharpen(rows, lower, np.full(2, np.inf), np.array([-1, 0], dtype=np.int8))
+    assert found is not None
+    np.testing.assert_array_equal(found.z, [1e3, 0.0])

@@ -249,3 +249,16 @@ def test_rows_that_lack_the_room_to_brake_are_not_kept(making, sign: float) -> N
     wanted = [fastest_towards(one, 1.0, 0.01) >= 0.499 * (1 + 1e-6) for one in room].index(False)
     assert 10 < wanted < 20
     assert limiter.kept(q, np.array([sign * 0.499, 0.0]), rows) == wanted
+
+
+@pytest.mark.req("TRF-03")
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_long_way_to_brake_is_seen_from_afar(making, sign: float) -> None:
+    """At 10 per s and 5 per s2 a joint needs 10 and more; 5 before its limit it may go at 7 at most."""
+    limiter = making.limiter(making.limits(1, 20.0, 10.0, 5.0), 0.01, reserve=0.0)
+    q, speed = np.array([sign * 15.0]), np.array([sign * 10.0])
+    most = fastest_towards(5.0, 5.0, 0.01) * 0.01
+    assert 0.069 < most < 0.071
+    bounds = limiter.bounds(q, np.array([sign * most / 0.01]))
+    assert (bounds.upper if sign > 0 else -bounds.lower)[0] == pytest.approx(most, rel=1e-9)
+    assert limiter.kept(q, speed, q[None] + sign * 0.0999) == 0
