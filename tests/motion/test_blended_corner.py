@@ -7,7 +7,7 @@ import pytest
 from scipy.interpolate import PPoly
 from scipy.spatial.transform import Rotation
 
-from irlx.motion.blended_corner import blended_corner
+from irlx.motion.blended_corner import _flattest, blended_corner
 from irlx.motion.hermite import Jet, quintic
 from irlx.motion.line import Line
 
@@ -81,6 +81,15 @@ def test_of_curves_that_bend_alike_the_most_even_one_is_taken() -> None:
     )
     slope = blended_corner(before, after, 0.25).path.curve.velocities(np.array([0.0]))
     assert slope[0] == pytest.approx([0.45, 0.0, 0.0], abs=1e-12)
+
+
+@pytest.mark.parametrize("scale", [2.0**-20, 2.0**20])
+def test_the_curve_does_not_depend_on_the_unit_of_length(scale: float) -> None:
+    """By powers of two all numbers are scaled exactly, and so is the choice among the tangents."""
+    turned = np.array([np.cos(2.0), np.sin(2.0), 0.0])
+    jets = [Jet(np.zeros(3), np.eye(3)[0], np.zeros(3)), Jet(np.array([0.2, 0.3, 0.0]), turned, np.zeros(3))]
+    scaled = [Jet(scale * jet.value, jet.rate, jet.bend / scale) for jet in jets]
+    np.testing.assert_allclose(_flattest(*scaled), scale * _flattest(*jets), rtol=1e-12, atol=1e-15 * scale)
 
 
 @pytest.mark.parametrize("seed", range(3))

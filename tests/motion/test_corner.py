@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from irlx.blocks import Blend, MoveKind
 from irlx.motion.blended_corner import blended_corner
-from irlx.motion.corner import Corner, corner_between
+from irlx.motion.corner import Corner, _speed, corner_between
 from irlx.motion.edges import edges_of
 
 pytestmark = pytest.mark.req("MOT-06")
@@ -50,3 +52,21 @@ def test_a_blend_behind_a_spline_takes_half_of_its_last_piece(kit) -> None:
     via = int(np.argmin(np.linalg.norm(fine - points[0], axis=1)))
     assert edge.room == pytest.approx((0.5 * np.sum(steps[:via]), 0.5 * np.sum(steps[via:])), rel=2e-3)
     assert edge.marks == pytest.approx((np.sum(steps[:via]), edge.path.length), rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("curvature", "turn_rate", "expected"),
+    [
+        ([0.0, 0.0], [0.0, 0.0], 1.5),
+        ([0.1, 7.0], [0.0, 0.0], np.sqrt(0.7 * 2.0 / 7.0)),
+        ([0.0, 0.0], [4.0, 0.5], 0.8 / 4.0),
+        ([7.0, 0.1], [0.0, 4.0], 0.8 / 4.0),
+    ],
+)
+def test_the_speed_beside_a_corner_is_that_of_the_narrowest_place(
+    kit, curvature, turn_rate, expected: float
+) -> None:
+    """0.7 of the acceleration is there for a path's own curve."""
+    shape = SimpleNamespace(curvature=np.array(curvature), turn_rate=np.array(turn_rate))
+    edge = SimpleNamespace(law=kit.law(speed=1.5, acc=2.0, speed_ori=0.8), shape=shape)
+    assert _speed(edge) == pytest.approx(expected, rel=1e-12)

@@ -196,3 +196,11 @@ def test_sizes(fastest: Callable[[Sections, float], PhasedLaw], scale: float) ->
     s, _ = law.evaluate(np.linspace(0.0, law.duration, 1001))
     assert np.all(np.diff(s) >= 0.0)
     assert s[-1] == scale
+
+
+@pytest.mark.parametrize("kind", LAWS)
+def test_before_and_behind_the_way_all_is_as_at_its_ends(kind: str) -> None:
+    law, _ = planned(kind, 3, 2)
+    outside = np.array([-0.5 * law.length, 1.5 * law.length])
+    assert law.times_at(outside).tolist() == [0.0, law.duration]
+    assert law.rates_at(outside).tolist() == [0.0, 0.0]

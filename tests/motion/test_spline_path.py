@@ -13,6 +13,8 @@ from irlx.blocks import MoveKind
 from irlx.motion.errors import MotionError
 from irlx.motion.line import Line
 from irlx.motion.plan_chain import PlannedChain, plan_chain
+from irlx.motion.polynomial_curve import PolynomialCurve
+from irlx.motion.spline_path import _refined
 
 pytestmark = pytest.mark.req("MOT-01")
 
@@ -181,3 +183,20 @@ def test_points_of_the_rest_keep_their_postures(kit) -> None:
     planned = plan_chain([leg], np.eye(3), np.zeros(3), 0.01)
     (rest,) = planned.rest([leg])
     assert rest.block.course == PathCourse(block.course.points[1:], postures[1:])
+
+
+def test_sections_are_cut_where_the_curvature_changes_fast() -> None:
+    """y = x^6: within a section it grows by half at most, or turns the tangent by 0.02 rad at most."""
+    powers = np.zeros((7, 1, 3))
+    powers[5, 0, 0] = powers[0, 0, 1] = 1.0
+    curve, even = PolynomialCurve(np.array([0.0, 1.0]), powers), np.linspace(0.0, 1.0, 5)
+    cuts = _refined(curve, even)
+    assert np.all(np.isin(even, cuts))
+    assert len(cuts) > 2 * len(even)
+    x = np.stack([cuts[:-1], 0.5 * (cuts[:-1] + cuts[1:]), cuts[1:]])
+    curvature = 30.0 * x**4 / (1.0 + 36.0 * x**10) ** 1.5
+    steady = np.max(curvature, axis=0) <= 1.5 * np.min(curvature, axis=0) * (1.0 + 1e-9)
+    turned = np.diff(np.arctan(6.0 * cuts**5))
+    assert np.all(steady | (turned <= 0.02))
+    assert np.any(np.diff(cuts) == 0.25 * 0.25)
+    assert not np.any(steady & (np.diff(cuts) < 0.01))

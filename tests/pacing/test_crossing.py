@@ -9,6 +9,7 @@ import pytest
 
 from irlx.blocks import Blend, JointTarget, MoveBlock, MoveKind, PoseTarget
 from irlx.pacing.carried import are_of_one_kind, passes
+from irlx.pacing.crossing import _Corner, _Cut
 from irlx.pacing.lookahead import Lookahead
 from irlx.promises import rounding_allowance
 
@@ -195,3 +196,19 @@ def test_what_is_told_of_a_corner_is_told_at_the_move_that_passes_it(kit, tours)
     assert sorted(note.code for note in told) == ["IRL433", "IRL436"]
     assert [note.place.line for note in told] == [1, 1]
     assert [note.related[0].place.line for note in told] == [2, 2]
+
+
+def test_three_ways_are_looked_at_between_the_same_rows(monkeypatch) -> None:
+    """The quickest ones that keep the joints' limits: here all those of no less than half the time."""
+    corner = object.__new__(_Corner)
+
+    def cut(left: int, joined: int, ticks: int) -> _Cut | None:
+        return _Cut(left, joined, ticks, np.zeros((ticks - 1, 1))) if 2 * ticks >= left + joined else None
+
+    monkeypatch.setattr(corner, "_cut", cut)
+    found: dict[tuple[int, int], list[int]] = {}
+    for one in corner._cuts((100, 50)):
+        found.setdefault((one.left, one.joined), []).append(one.ticks)
+    assert len(found) == 36
+    assert found[100, 50] == [76, 87, 97]
+    assert all(len(ticks) <= 3 for ticks in found.values())

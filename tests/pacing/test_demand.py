@@ -58,6 +58,8 @@ def test_parts_and_joints_keep_every_column() -> None:
     assert found.later(5).tick.tolist() == [13, 14, 15, 16]
     assert found.repeated(-1, 2).tick.tolist() == [11, 11]
     assert found.repeated(0, 0).s.tolist() == []
-    assert len(Demands.of([])) == 0
+    nothing = Demands.of([])
+    assert len(nothing) == 0
+    np.testing.assert_array_equal(Demands.joined(nothing, found).twist, found.twist)
     with pytest.raises(IndexError):
         found[4]

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
+from numpy.polynomial import Chebyshev
 
 from irlx.motion.trapezoid import Trapezoid
-from irlx.pacing.glance import _AT, ROW_STEP, Glanced, Undisturbed, _rows
+from irlx.pacing.glance import _AT, NODES, ROW_STEP, Glanced, Undisturbed, _curve, _rows
+from irlx.transform.criteria.posture import Posture
 from machines import machine
 
 DT, TICKS, FIRST = 0.01, 190, 41
@@ -49,3 +53,32 @@ def test_rows_are_on_the_polynomial_close_enough_and_at_ticks_of_the_law(size: f
     # Nobody of a dry run asks for twists; there is one for every row all the same.
     assert found.demands.twist.shape == (rows, 6)
     assert np.all(np.isnan(found.demands.twist))
+
+
+@pytest.mark.parametrize("degree", [NODES - 3, NODES - 2, NODES - 1])
+def test_the_tail_of_a_chebyshev_polynomial_is_its_factor(degree: int) -> None:
+    """Of one whose degree is not one of the last two there is none."""
+    values = 3e-4 * Chebyshev.basis(degree)(1.0 - 2.0 * _AT)
+    curve = Undisturbed(np.array([0.0, 1.0]), values[None, :, None], _AT, None)
+    expected = 3e-4 if degree >= NODES - 2 else 0.0
+    np.testing.assert_allclose(curve.tails, [expected], rtol=1e-12, atol=1e-18)
+
+
+def test_the_criterion_of_each_node_is_asked_for_by_place_and_way() -> None:
+    """The place of a node, and the way there from the one before; two pieces."""
+    robot = machine("arm7")
+    path = robot.line((0.0, -0.05, 0.0))
+    asked: list[tuple[float, float]] = []
+
+    def at(s: float, way: float) -> Posture:
+        asked.append((s, way))
+        return Posture(robot.weights, robot.start)
+
+    motion = Glanced(path, Trapezoid.fastest(0.05, 0.25, 1.5), 30, robot.start, SimpleNamespace(at=at), DT, 1)
+    curve = _curve(motion, robot.model(), np.array([0.0, 0.02, path.length]))
+    assert curve is not None
+    nodes = np.unique([*(0.02 * _AT), *(0.02 + (path.length - 0.02) * _AT)])
+    places, ways = np.array(asked).T
+    np.testing.assert_allclose(places, nodes[1:], rtol=1e-12)
+    np.testing.assert_allclose(ways, np.diff(nodes), rtol=1e-9)
+    np.testing.assert_allclose(curve.nodes, nodes, rtol=1e-12)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,10 +12,11 @@ from scipy.spatial.transform import Rotation
 from irlx.diagnostics import Place
 from irlx.pacing.demand import Demands
 from irlx.pacing.errors import PacingError
-from irlx.pacing.left_out import AskedPose, check_on_path
+from irlx.pacing.left_out import AskedPose, check_on_path, check_points
 from irlx.robot.description import RobotDescription
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
+from irlx.transform.qp.dual import DualSolver
 
 PLACE = Place("t.irl")
 ROWS = 9
@@ -90,3 +92,31 @@ def test_a_target_between_rows_is_led_on_to(turning) -> None:
 def test_nothing_follows_where_the_joints_cannot_go(turning) -> None:
     """A target beside a rounded corner, beyond the position limits: whoever passes it owes no turn there."""
     turning.check(turning.pose(4, extra=0.1, away=1.5), room=1.0)
+
+
+def check_all(turning, *poses: AskedPose) -> None:
+    """Points of a PATH, sought from the first row on, joints up to 5 rad or m."""
+    setup, free = SimpleNamespace(weights=np.ones(6)), np.ones(6, dtype=bool)
+    situation = SimpleNamespace(
+        kinematics=turning.kinematics, setup=setup, free=free, q=turning.q[0], qp=DualSolver()
+    )
+    check_points(poses, situation, turning.limits())
+
+
+def test_points_that_postures_meet_in_all_are_met(turning) -> None:
+    check_all(turning, turning.pose(2), turning.pose(ROWS - 1))
+
+
+def test_a_point_that_no_posture_meets_in_all(turning) -> None:
+    """What leads to it from the one before meets the task alone, and so does all else."""
+    with pytest.raises(PacingError) as caught:
+        check_all(turning, turning.pose(2), turning.pose(4, extra=0.1))
+    reason = caught.value.reason
+    assert reason.code == "IRL437"
+    assert f"{np.degrees(0.1):.6g} deg about x" in reason.data["off"].replace("-", "")
+
+
+def test_a_point_that_is_out_of_reach_is_passed_over(turning, monkeypatch) -> None:
+    """The next one is met all the same. Others say what cannot be reached."""
+    monkeypatch.setattr("irlx.transform.posture_search.RESTARTS", 1)
+    check_all(turning, turning.pose(2, away=30.0), turning.pose(4))

@@ -82,6 +82,7 @@ def test_disturbed_motions_are_planned_and_keep_every_promise(name: str, dt: flo
     found = paced(name, limits, dt)
     assert isinstance(found, PacedPath)
     assert found.planned
+    assert found.iterations == 0
     rows = np.vstack([machine(name).start, found.q])
     assert excess(rows, dt, *(limits.pair(kind) for kind in KINDS)).none
     path = motion_of(name, dt).plan.path

@@ -117,3 +117,15 @@ def test_a_joint_that_rests_takes_nothing_of_a_bound_of_zero(kit) -> None:
     assert found.speed == pytest.approx(0.2)
     moving = np.where(np.arange(7) == 2, 0.0, 0.5)
     assert excess_of(START, ramp(), kit.limits(0.02, moving), DT).speed == np.inf
+
+
+def test_what_rounding_moves_a_joint_that_may_not_move_is_nothing(kit) -> None:
+    """One bit up and down again beside another joint that is twice as fast as it may."""
+    limits = kit.limits(5.0, 0.1, 10.0)
+    lower, upper = limits.speed_lower.copy(), limits.speed_upper.copy()
+    lower[4] = upper[4] = 0.0
+    start = np.ones(7)
+    rows = start + ramp(speed=0.2)
+    rows[10, 4] = np.nextafter(1.0, 2.0)
+    found = excess_of(start, rows, limits.with_pair("speed", lower, upper), DT)
+    assert found.speed == pytest.approx(2.0, rel=1e-9)

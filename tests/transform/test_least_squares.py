@@ -89,3 +89,19 @@ def test_rows_that_are_no_numbers_end_the_search():
 
     found = least_squares_in_bounds(residual, np.zeros(2), -np.ones(2), np.ones(2))
     np.testing.assert_array_equal(found, np.zeros(2))
+
+
+def test_few_evaluations_do_where_the_linear_model_foretells_half():
+    """Six rows that curve: from a start far off some six of them, since damping is eased as soon as that."""
+    asked = []
+    for seed in range(8):
+        random = np.random.default_rng(seed)
+        matrix, aim = random.normal(size=(6, 9)), 0.5 * random.normal(size=6)
+
+        def curved(x, matrix=matrix, aim=aim):
+            asked.append(x)
+            return matrix @ np.sin(x) - aim, matrix * np.cos(x)
+
+        found = least_squares_in_bounds(curved, np.zeros(9), np.full(9, -9.0), np.full(9, 9.0))
+        np.testing.assert_allclose(matrix @ np.sin(found), aim, rtol=0, atol=1e-11)
+    assert len(asked) <= 8 * 7

@@ -10,7 +10,7 @@ from irlx.robot.description import Joint, JointKind, RobotDescription
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
 from irlx.robot.urdf import read_urdf
-from irlx.transform.open_posture import open_posture
+from irlx.transform.open_posture import _openness, open_posture
 from long_run import first_rows
 
 ROBOTS = files("irlx.cell") / "robots"
@@ -103,3 +103,19 @@ def test_the_elbow_of_an_arm_on_the_floor_is_not_below_it():
     q, _ = open_posture(kinematics, limits)
     kinematics.tool_pose(q)
     assert min(float(frame.translation[2]) for frame in list(kinematics.data.oMi)[1:]) > -1e-9
+
+
+@pytest.mark.parametrize(("first", "second"), [(0.1, -0.5), (0.02, 0.1), (0.05, 0.7), (1.2, 0.7)])
+def test_a_tool_or_a_joint_below_the_foot_counts_less(first, second):
+    """A tenth of the reach below it a half is left, far below a fifth; mirrored, singular values are alike."""
+    y = (0.0, 1.0, 0.0)
+    joints = tuple(replace(one, axis=y) for one in two_links(0.5, 0.4).joints)
+    kinematics = Kinematics(RobotDescription("two", "base", "tip", joints, coordinates=("x", "z")))
+    found, expected = [], []
+    for side in (1.0, -1.0):
+        elbow = -0.5 * np.sin(side * first)
+        lowest = min(0.0, elbow, elbow - 0.4 * np.sin(side * (first + second)))
+        found.append(_openness(kinematics, side * np.array([first, second])))
+        expected.append(max(1.0 + 5.0 * lowest / 0.9, 0.2))
+    assert expected[0] != expected[1]
+    assert found[0] / found[1] == pytest.approx(expected[0] / expected[1], rel=1e-9)

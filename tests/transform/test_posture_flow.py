@@ -9,7 +9,14 @@ from scipy.optimize import minimize
 
 from irlx.robot.limits import JointLimits
 from irlx.transform.fibre import Fibre, Tangent
-from irlx.transform.posture_flow import FlowEnd, _shortened, _why, posture_flow, projected_gradient
+from irlx.transform.posture_flow import (
+    FlowEnd,
+    _follows,
+    _shortened,
+    _why,
+    posture_flow,
+    projected_gradient,
+)
 from irlx.transform.qp.dual import DualSolver
 from irlx.transform.qp.proxqp import ProxQpSolver
 from long_run import first
@@ -362,3 +369,11 @@ def test_a_flow_ends_singular_by_the_ratio_of_least_and_largest(least, end):
     )
     fibre = SimpleNamespace(kinematics=SimpleNamespace(row_scale=np.ones(3)), rank=lambda *_: 3)
     assert _why(fibre, np.zeros(4), tangent) is end
+
+
+@pytest.mark.parametrize(("length", "most"), [(0.01, 0.0025), (1e-6, 1e-5)])
+def test_a_way_back_onto_the_pose_is_a_correction_up_to_a_quarter_of_the_step(length, most):
+    """Of a joint by itself; of next to nothing always."""
+    step = length * np.array([0.6, -1.0, 0.2])
+    for share, follows in ((0.99, True), (1.01, False)):
+        assert _follows(np.ones(3), step, np.ones(3) + step + [0.0, share * most, 0.5 * most]) is follows

@@ -57,6 +57,14 @@ def test_each_joint_has_its_own_bounds(tools) -> None:
     assert clock.duration == pytest.approx(shortest(1.0, 0.5, 1.0), rel=2e-3)
 
 
+def test_a_joint_that_rests_but_for_rounding_bounds_no_speed(tools) -> None:
+    """It may not move at all, and the other one goes as fast as without it."""
+    curve = straight(np.array([1.0, 1e-15]))
+    bounds = clock_bounds(curve, tools.limits(2, np.array([0.5, 0.0]), 9.0), np.full(401, FAST), HARD)
+    assert np.max(bounds.cap) == pytest.approx(0.25, rel=1e-3)
+    assert set(bounds.joint[bounds.governor == Governor.SPEED]) == {0}
+
+
 @pytest.mark.parametrize("way", [1.0, -1.0])
 def test_asymmetric_limits_count_by_direction(tools, way: float) -> None:
     """Speeding up by 4, braking by 1 towards +; the other way round towards -."""

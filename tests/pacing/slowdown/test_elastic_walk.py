@@ -291,3 +291,18 @@ def test_a_step_that_is_no_number_in_some_joint_ends_the_search(lost: list[int])
     solver = TickSolver(model.kinematics, ProxQpSolver())
     assert Lost(model, solver, problem, room, 1e-9).solve(np.zeros(7)) is None
     assert len(rounds) == 1
+
+
+@pytest.mark.parametrize("off", [0.0, 1e-3])
+def test_a_step_that_leads_nowhere_is_none(off: float, monkeypatch) -> None:
+    """Steps have become small, and one coordinate of the pose is not met."""
+    robot = machine("arm7")
+    position, rotation = robot.pose(robot.start)
+    target = robot.kinematics.target(rotation, position + rotation @ [off, 0.0, 0.0])
+    least, free = LeastMotion(robot.weights), np.ones(7, dtype=bool)
+    problem, step = TickProblem(target, robot.start, None, least, free), np.zeros(7)
+    stretch = _Stretch(robot.model(), None, problem, None, 1e-9)
+    monkeypatch.setattr(stretch, "_round", lambda whole: (step, 0.25))
+    found = stretch.solve(np.zeros(7))
+    assert (found is None) is (off > 0.0)
+    assert found is None or found[1] == 0.25
