@@ -163,3 +163,36 @@ def test_a_step_that_breaks_a_floor_is_not_kept() -> None:
     assert not tick.kept(into)
     loose = clearance.tick(start, DT).without(tick.near.pairs)
     assert not len(loose.near.pairs)
+
+
+@pytest.mark.parametrize(("rows", "clear"), [(2, False), (200, True)])
+def test_a_way_stays_clear_where_its_steps_are_short(rows: int, clear: bool) -> None:
+    """A turn past a ball that is far from the way; in one step the joints might go anywhere between."""
+    clearance, start, _ = beside((3.0, 0.0, 0.0))
+    turn = np.linspace(-1.5, 1.5, rows)[:, None] * np.eye(7)[0]
+    assert clearance.stays_clear(start + turn) is clear
+
+
+def test_a_way_through_a_ball_between_two_rows_is_not_clear() -> None:
+    clearance, start, pairs = beside((0.1, 0.0, 0.0))
+    ends = start + np.outer([-1.4, 1.4], np.eye(7)[0])
+    assert all(np.min(least_of(clearance, end, pairs)) > INFLUENCE for end in ends)
+    assert np.min(least_of(clearance, start, pairs)) < 0.1
+    assert clearance.stays_clear(ends) is False
+    assert Clearance(clearance.distances).stays_clear(ends[:1]) is True
+
+
+@pytest.mark.parametrize("scale", [-1.0, 0.1, 0.5, 0.9, 1.1, 2.0])
+def test_whether_a_step_that_goes_on_stays_clear(scale: float) -> None:
+    """To first order, by differences: up to where the nearest pair has come to margin and reserve."""
+    clearance, start, _ = beside((0.2, 0.0, 0.0))
+    tick = clearance.tick(start, DT)
+    assert tick is not None
+    pairs, whole, way = tick.near.pairs.copy(), np.full(7, 1e-3), way_into(start)[-1] - start
+    here = least_of(clearance, start + whole, pairs)
+    there = least_of(clearance, start + whole + 1e-6 * way, pairs)
+    slope = (there - here) / 1e-6
+    coming = slope < 0.0
+    assert np.any(coming)
+    reached = float(np.min((here - MARGIN - RESERVE)[coming] / -slope[coming]))
+    assert tick.stays_clear(whole, scale * reached * way) is (scale < 1.0)

@@ -107,7 +107,7 @@ def test_the_elbow_of_an_arm_on_the_floor_is_not_below_it():
 
 @pytest.mark.parametrize(("first", "second"), [(0.1, -0.5), (0.02, 0.1), (0.05, 0.7), (1.2, 0.7)])
 def test_a_tool_or_a_joint_below_the_foot_counts_less(first, second):
-    """A tenth of the reach below it a half is left, far below a fifth; mirrored, singular values are alike."""
+    """A tenth of the reach below it a half is left, far below a fifth; mirrored arms are alike."""
     y = (0.0, 1.0, 0.0)
     joints = tuple(replace(one, axis=y) for one in two_links(0.5, 0.4).joints)
     kinematics = Kinematics(RobotDescription("two", "base", "tip", joints, coordinates=("x", "z")))

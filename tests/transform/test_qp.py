@@ -274,3 +274,14 @@ def test_rounding_is_judged_by_the_size_of_what_the_rows_reach() -> None:
     found = sharpen(rows, lower, np.full(2, np.inf), np.array([-1, 0], dtype=np.int8))
     assert found is not None
     np.testing.assert_array_equal(found.z, [1e3, 0.0])
+
+
+@pytest.mark.parametrize(("off", "solved"), [(0.0, True), (4e-12, True), (1e-10, False)])
+def test_a_row_that_held_ones_decide_may_miss_by_rounding(off: float, solved: bool) -> None:
+    """x >= 1, y >= 1 and x + y <= 2, but for what rounding left of it: they meet in one point, or nowhere."""
+    rows = np.array([[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]])
+    lower, upper = np.array([1.0, 1.0, -np.inf]), np.array([np.inf, np.inf, 2.0 - off])
+    found = DualSolver().solve(rows, lower, upper)
+    assert (found.z is not None) is solved
+    if solved:
+        np.testing.assert_allclose(found.z, [1.0, 1.0], rtol=0, atol=1e-11)
