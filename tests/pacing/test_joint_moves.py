@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from irlx.blocks import PoseTarget
 from irlx.diagnostics import Place
 from irlx.pacing.errors import PacingError
-from irlx.pacing.joint_moves import _check_rows
+from irlx.pacing.joint_moves import _check_rows, _programmed
 
 PLACE = Place("t.irl")
 DT = 0.01
@@ -35,3 +38,22 @@ def test_the_stop_is_judged_too(kit, shop) -> None:
         _check_rows(shop.pacer._situation, q, kit.limits(5.0, np.inf, 6.0), DT, PLACE)
     reason = caught.value.reason
     assert (reason.data["joint"], reason.data["kind"], reason.data["tick"]) == ("rail", "acceleration", 3)
+
+
+def test_a_ptp_within_bands_is_programmed_as_its_frame_sees_the_tool() -> None:
+    """A target without an orientation keeps that of the tool in the frame; without bands there is nothing."""
+    turned = np.diag([-1.0, -1.0, 1.0])
+    framed = SimpleNamespace(pose=(turned, np.ones(3)))
+    situation = SimpleNamespace(
+        pose=(np.eye(3), np.zeros(3)),
+        locate=lambda origin: PLACE,
+        in_frame=lambda frame, place: framed if (frame, place) == ("table", PLACE) else None,
+    )
+    target = PoseTarget((0.1, 0.2, 0.3), None)
+    block = SimpleNamespace(tolerance="bands", frame="table", origin=None, target=target)
+    found = _programmed(situation, block)
+    assert found is not None
+    np.testing.assert_array_equal(found[0], turned)
+    np.testing.assert_array_equal(found[1], [0.1, 0.2, 0.3])
+    block.tolerance = None
+    assert _programmed(situation, block) is None

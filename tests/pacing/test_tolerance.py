@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -10,7 +12,7 @@ from irlx.pacing.posture_term import Asked
 from irlx.pacing.rows import MotionRows, PathPart
 from irlx.pacing.slowdown.clock_bounds import Governor
 from irlx.pacing.slowing import Slowing
-from irlx.pacing.tolerance import Widened, narrowed, widened
+from irlx.pacing.tolerance import Widened, _weights, narrowed, widened
 
 
 @pytest.fixture
@@ -77,3 +79,12 @@ def test_rows_of_the_robot_alone(kit, level) -> None:
     assert narrowed(rows_of("joints", q, None), freed).path is None
     plain = rows_of("move", q, path)
     assert narrowed(plain, None) is plain
+
+
+@pytest.mark.parametrize(("slide", "least"), [(0.1, 0.9), (2.0, 5.0)])
+def test_virtual_joints_take_a_thousandth_of_the_cheapest_turn(slide: float, least: float) -> None:
+    """A slide that reaches 3 m counts by the square of that, and a virtual slide the other way round."""
+    axes = (SimpleNamespace(is_prismatic=True), SimpleNamespace(is_prismatic=False))
+    robot, setup = SimpleNamespace(axes=axes, reach=3.0), SimpleNamespace(weights=np.array([slide, 5.0]))
+    found = _weights(SimpleNamespace(robot=robot, setup=setup), np.array([0, 2]), {1: 1, 4: 3}, 4)
+    np.testing.assert_allclose(found, [slide, 1e-3 * least / 9.0, 5.0, 1e-3 * least], rtol=1e-12)

@@ -54,3 +54,8 @@ def test_a_wait_of_too_many_ticks(kit, duration: float) -> None:
     with pytest.raises(PacingError) as caught:
         waited(wait(duration), kit.start, DT, 1, Kinematics(kit.gantry()), PLACE)
     assert caught.value.reason.code == "IRL425"
+
+
+def test_a_block_by_itself_begins_with_its_only_part(shop) -> None:
+    (done,) = shop.pacer.carry_out([WaitBlock(**shop._data(), duration=0.05)])
+    assert done.begins

@@ -10,6 +10,7 @@ import pytest
 from scipy.linalg import null_space
 
 from drawn_scenes import cell_of
+from irlx.pacing.correction.approach import TOO_NEAR
 from irlx.pacing.correction.corrected_tick import (
     Corrected,
     Surroundings,
@@ -156,6 +157,25 @@ def test_a_posture_gives_way_by_that_step() -> None:
     assert beside.least(found.q) > beside.least(row.q) + 1e-3
     for mine, its in zip(beside.kinematics.tool_pose(found.q), (row.rotation, row.position), strict=True):
         np.testing.assert_allclose(mine, its, rtol=0, atol=1e-8)
+
+
+@pytest.mark.parametrize(("request_y", "governor"), [(0.0, None), (0.004, TOO_NEAR)])
+def test_it_gives_way_where_the_correction_has_stood_and_stands(request_y: float, governor) -> None:
+    """What kept it from its request is told, where there is one."""
+    beside = beside_ball(0.05)
+    before, row = uncorrected(planned(beside, beside.q)), planned(beside, beside.q + beside.base)
+    surroundings, nothing = around(beside, wide(), beside.clearance), np.zeros(6)
+
+    def tick() -> _Tick:
+        keeping = beside.clearance.following_tick(beside.q, beside.base, DT)
+        return _Tick(before, row, EVERYWHERE, Posture(WEIGHTS, row.q), surroundings, keeping)
+
+    found = tick().pressed(nothing, nothing, np.array([0.0, request_y, 0.0, 0.0, 0.0, 0.0]))
+    assert found is not None
+    np.testing.assert_array_equal(found.q, tick()._giving_way(nothing, governor).q)
+    assert not np.any(found.correction)
+    assert found.governor == governor
+    assert found.refused is (governor is not None)
 
 
 def test_where_no_posture_gives_way_the_correction_goes_on(monkeypatch) -> None:

@@ -11,6 +11,8 @@ from irlx.pacing.slowdown import elastic_walk as elastic_walk_module
 from irlx.pacing.slowdown.elastic_walk import (
     Passage,
     _least_cost,
+    _many_unknowns,
+    _one_unknown,
     _Steps,
     _Stretch,
     _within_sides,
@@ -209,6 +211,22 @@ def test_the_one_unknown_is_where_no_other_value_costs_less(seed: int) -> None:
     assert float(cost(np.array([z]), at, rise, price)[0]) <= best + 1e-12 * max(abs(best), 1e-12), (
         f"seed {seed}"
     )
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_many_unknowns_of_which_one_moves_anything_are_that_one(seed: int) -> None:
+    """The quadratic problem in step and stretch against the search along lines, which has another form."""
+    rng = np.random.default_rng(seed)
+    slope, target, wide = rng.normal(size=5), rng.normal(size=5), np.full(5, 4.0)
+    up, down = rng.uniform(0.1, 1.0, (2, 5))
+    up[0] = down[1] = np.inf
+    room, price = Room(-wide, wide, down, up, 1.0), float(10.0 ** rng.uniform(-2.0, 1.0))
+    step, stretch = _one_unknown(slope[:, None], target, room, price, None)
+    assert stretch > 0.0
+    rows = np.stack([np.zeros(5), slope, np.zeros(5)], axis=1)
+    (found, other), _ = _many_unknowns(rows, target, room, price, None, None)
+    np.testing.assert_allclose(found, step, rtol=0, atol=1e-9)
+    assert other == pytest.approx(stretch, rel=1e-7)
 
 
 # ---- one interval

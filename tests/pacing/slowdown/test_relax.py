@@ -275,6 +275,29 @@ def test_the_sum_is_the_stated_one(near: bool) -> None:
         assert relaxation._sum(change) == pytest.approx(wanted, rel=1e-9)
 
 
+@pytest.mark.parametrize("limited", [False, True])
+def test_the_slope_of_the_sum_by_differences(limited: bool) -> None:
+    """With all hinges that act at the postures themselves, on both sides of speeds and positions."""
+    of, centre = few(True, limited), np.zeros(7)
+    half = np.full(of.q.shape, np.inf)
+    if limited:
+        centre[1:4], half[:, 1:4] = np.median(of.q[:, 1:4], axis=0), 0.002
+    relaxation = replace(of, bounds=(centre - half, centre + half)).relaxation(Smoothing(0.1, 1.0))
+    nothing = np.zeros_like(of.q)
+    active = relaxation._hinges(nothing)
+    if limited:
+        assert all({-1, 1} <= set(side[1:-1].ravel().tolist()) for side in active[:2])
+    _, slope = relaxation._with_hinges(*relaxation._smooth_part(), active)
+    for knot in range(1, len(of.q) - 1):
+        sums = []
+        for size in (1e-6, -1e-6):
+            change = nothing.copy()
+            change[knot] = size * relaxation._basis[knot][:, 0]
+            sums.append(relaxation._sum(change))
+        # Nobody halves the squares of the sum.
+        assert 2.0 * slope[knot - 1, 0] == pytest.approx((sums[0] - sums[1]) / 2e-6, rel=1e-4, abs=1e-4)
+
+
 @pytest.mark.parametrize("near", [False, True])
 @pytest.mark.parametrize("limited", [False, True])
 def test_no_step_on_the_null_spaces_lowers_the_sum_below_that_of_the_step(near: bool, limited: bool) -> None:
