@@ -297,3 +297,14 @@ def test_each_name_is_told_once_and_in_the_order_of_the_files():
 def test_types_of_an_unknown_program_are_not_called_unknown():
     text = "DATALIST points;\n grip: g := (1);\n REAL: a := u;\nENDDATALIST"
     assert told(analyse(source_text("points.dat", text))) == [("points.dat:3:13 IRL201 unknown name 'u'",)]
+
+
+@pytest.mark.parametrize(
+    ("joints", "expected"), [(0, []), (7, []), (6, ["MAIN_JOINT takes 6 values, found 7"])]
+)
+def test_a_list_by_itself_is_held_against_the_robot(joints, expected):
+    """Where the cell is known; without one any number of joints will do."""
+    text = "DATALIST postures;\n  MAIN_JOINT: home := (1, 2, 3, 4, 5, 6, 7);\nENDDATALIST\n"
+    names = tuple(f"a{number}" for number in range(joints))
+    found = analyse(source_text("postures.dat", text), joints=names, lints=False).diagnostics
+    assert [one.message for one in found] == expected

@@ -272,6 +272,8 @@ def test_wrongly_typed(told_of, statement):
         "x := nothing(1, 2, TRUE);",
         "p := ((nothing, 1, 2), o);",
         "b := nothing AND nothing > 3;",
+        "b := NOT nothing;",
+        "x := -nothing;",
         "tr[nothing] := nothing;",
         "x := SIN(nothing) * nothing;",
         "v := nothing * v + nothing;",
@@ -293,6 +295,16 @@ def test_what_is_unknown_is_told_once(told_of, statement):
 def test_a_mistake_does_not_spread(told_of, statement):
     """Whatever surrounds a mistake is silent about it; a second mistake of its own may still be told."""
     assert len(told_of(program(statement))) == (2 if "TRUE" in statement else 1)
+
+
+def test_values_of_which_no_target_is_made_are_looked_at_one_by_one(told_of):
+    """Four values fit no kind of target; what is wrong inside of them is told all the same."""
+    whole = "(1, (2, 3 + TRUE), 4, 5)"
+    expected = "expected POSE or POSITION or MAIN_JOINT, found 4 values"
+    wanted = {("IRL222", expected, whole), ("IRL227", "+ is not defined for INT and BOOL", "3 + TRUE")}
+    found = told_of(program(f"MOVE LIN {whole};"))
+    assert len(found) == 2
+    assert set(found) == wanted
 
 
 # ---- Pascal (LANG-30)
