@@ -207,8 +207,11 @@ def test_three_ways_are_looked_at_between_the_same_rows(monkeypatch) -> None:
 
     monkeypatch.setattr(corner, "_cut", cut)
     found: dict[tuple[int, int], list[int]] = {}
+    saved = []
     for one in corner._cuts((100, 50)):
         found.setdefault((one.left, one.joined), []).append(one.ticks)
+        saved.append(one.saved)
     assert len(found) == 36
+    assert saved == sorted(saved, reverse=True)
     assert found[100, 50] == [76, 87, 97]
     assert all(len(ticks) <= 3 for ticks in found.values())
