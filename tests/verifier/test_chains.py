@@ -20,6 +20,7 @@ from made_chains import (
     tiny_steps,
     with_an_arc,
 )
+from small_circles import onto_the_second_half, round_in_two_ticks
 
 pytestmark = [pytest.mark.req("MOT-06"), pytest.mark.req("STR-06"), pytest.mark.req("MOT-20")]
 
@@ -38,6 +39,8 @@ GOOD = {
         stopping_anyway,
         reversal,
         slow_then_fast,
+        round_in_two_ticks,
+        onto_the_second_half,
     )
 } | {
     "polyline passed anyhow": lambda kit: polyline(kit, Blend(), (0.03, 0.02, 0.01)),

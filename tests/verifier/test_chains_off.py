@@ -29,6 +29,7 @@ from made_chains import (
     with_an_arc,
 )
 from passing_moves import trapezoid, way_of
+from small_circles import round_in_two_ticks
 
 pytestmark = [pytest.mark.req("MOT-06"), pytest.mark.req("STR-06")]
 
@@ -110,6 +111,11 @@ def cut_short(stream: JointStream, rows: int = 30) -> JointStream:
 
 
 DAMAGES = {
+    "once more round than the rows": (
+        lambda kit: round_in_two_ticks(kit, 6.0 * np.pi).stream(),
+        "path progress",
+        5,
+    ),
     "5e-6 m off a blend": (
         lambda kit: off(corner(kit), last_of(corner(kit), 1), 3, 5e-6),
         "path position",

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from math import sqrt
 
 import numpy as np
 
-from irlx.blocks import Blend, MoveKind
+from irlx.blocks import Blend, MotionLaw, MoveKind
+from irlx.promises import PROGRAM_EXCESS
 from irlx.streams.joint_stream import Floats, Integers
 from irlx.verifier.demands import Demand
-from irlx.verifier.geometry.arcs import arc_shape
+from irlx.verifier.geometry.arcs import WHOLE_TURN, ArcShape, arc_shape
 from irlx.verifier.geometry.chains import Leg
 from irlx.verifier.geometry.corners import Corner
 from irlx.verifier.geometry.curves import ArcCurve, Curve, LineCurve
@@ -50,9 +52,9 @@ class ChainLegs:
     free_end: float | None
 
 
-def legs_of(chain: tuple[Demand, ...]) -> ChainLegs:
-    """The legs of a chain; raises Unplaced and NoCurve."""
-    moves = [_curves(demand) for demand in chain]
+def legs_of(chain: tuple[Demand, ...], dt: float) -> ChainLegs:
+    """The legs of a chain of which there is a row every `dt` s; raises Unplaced and NoCurve."""
+    moves = [_curves(demand, dt) for demand in chain]
     curves = [curve for own in moves for curve in own]
     corners = [corner for demand, own in zip(chain, moves, strict=True) for corner in _corners(demand, own)]
     pairs = zip(curves, [*curves[1:], curves[-1]], corners, strict=True)
@@ -90,8 +92,8 @@ def end_reach(demand: Demand) -> float:
         return float(asked)
 
 
-def _curves(demand: Demand) -> list[Curve]:
-    """The curves of one move."""
+def _curves(demand: Demand, dt: float = 0.0) -> list[Curve]:
+    """The curves of one move, with a row every `dt` s."""
     block = demand.move.block
     if demand.allowance.shifts:
         raise Unplaced("displacements WITH TOLERANCE along their PATH are not judged")
@@ -103,7 +105,10 @@ def _curves(demand: Demand) -> list[Curve]:
         if shape is None:
             raise NoCurve
         end = poses[2] if block.arc.angle is None else (shape.end, poses[2][1])
-        return [ArcCurve(shape, block.arc, (poses[0][1], poses[1][1], end[1]))]
+        step = _largest_turn(shape, demand.move.law, dt)
+        if not step < WHOLE_TURN:
+            raise Unplaced("tool may go round a circle more than once between two rows")
+        return [ArcCurve(shape, block.arc, (poses[0][1], poses[1][1], end[1]), step)]
     if len(poses) > 2 and _are_same(poses[0], poses[1]):
         del poses[1]
     if block.kind is MoveKind.SPLINE and len(poses) > 2:
@@ -112,6 +117,11 @@ def _curves(demand: Demand) -> list[Curve]:
     if any(not line.length > TURN_RULES * line.angle for line in lines):
         raise Unplaced("pieces of their PATH turn the tool on the spot")
     return list(lines)
+
+
+def _largest_turn(shape: ArcShape, law: MotionLaw, dt: float) -> float:
+    """Angle, rad, that a tool at the most goes on along a circle between two rows, by SPEED and ACC."""
+    return min(law.speed * shape.flatness, sqrt(law.acc * shape.flatness)) * dt * (1.0 + PROGRAM_EXCESS)
 
 
 def _are_same(one: Pose, other: Pose) -> bool:

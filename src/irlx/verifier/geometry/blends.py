@@ -6,15 +6,20 @@ from functools import cached_property
 from itertools import product
 
 import numpy as np
+from numpy.typing import NDArray
 
-from irlx.streams.joint_stream import Floats
+from irlx.streams.joint_stream import Floats, Integers
 from irlx.verifier.geometry.allowance import EXACT, Allowance
 from irlx.verifier.geometry.attitudes import BlendedTurn
 from irlx.verifier.geometry.bernstein import GAUSS, Jets, bernstein, nearest_parameters, quintic_control
 from irlx.verifier.geometry.curves import Curve
 
-CELLS = 32
-"""Parts of a join by its parameter: where the nearest point is sought, and the length summed."""
+CELLS, MOST_TURN, HALVINGS = 32, 0.5, 24
+"""Parts of a join by its parameter: where the nearest point is sought, and the length summed. Those in which
+it turns by more than `MOST_TURN` rad are halved, up to so many times."""
+
+ON_IT = 1e-12
+"""Rows so near to the point that was found, m, lie there."""
 
 TANGENTS = np.linspace(0.75, 1.45, 15)
 """First derivatives by the parameter at both ends that a join may have, as parts of the circular arc between
@@ -54,8 +59,36 @@ class Blend:
         """Parameter (R,) of the point nearest to each position (R, 3)."""
         samples, points = self._samples
         apart = np.sum((positions[:, None] - points) ** 2, axis=2)
-        seeds = samples[np.argmin(apart, axis=1)]
-        return nearest_parameters(self._jet_at, positions, seeds, 1.0 / CELLS, 1.0)
+        nearest = np.argmin(apart, axis=1)
+        cells = np.diff(samples)
+        widths = np.maximum(np.append(cells, 0.0), np.insert(cells, 0, 0.0))[nearest]
+        found = nearest_parameters(self._jet_at, positions, samples[nearest], widths, 1.0)
+        off = np.linalg.norm(positions - self.points(found), axis=1)
+        unsure = np.flatnonzero((off > ON_IT) & ~self._beyond(positions, found))
+        if unsure.size:
+            # In a narrow bend the nearest sample may be one of the other side.
+            least = np.sqrt(np.minimum(apart[unsure, :-1], apart[unsure, 1:])) - 0.5 * np.diff(self._lengths)
+            rows, there = np.nonzero(least < off[unsure, None])
+            self._seek_in(there, unsure[rows], positions, found, off)
+        return found
+
+    def _beyond(self, positions: Floats, u: Floats) -> NDArray[np.bool_]:
+        """Which positions (R, 3), nearest to its points at u (R,), lie before its start or behind its end."""
+        before = (positions - self._control[0]) @ self._rate[0] < 0.0
+        return np.asarray(((u <= 0.0) & before) | ((u >= 1.0) & (self.behind(positions) > 0.0)))
+
+    def _seek_in(
+        self, cells: Integers, rows: Integers, positions: Floats, found: Floats, off: Floats
+    ) -> None:
+        """Enter where rows (N,) come nearer in cells (N,) than where they are `found` (R,), `off` (R,)."""
+        samples = self._samples[0]
+        middles, halves = 0.5 * (samples[1:] + samples[:-1])[cells], 0.5 * np.diff(samples)[cells]
+        other = nearest_parameters(self._jet_at, positions[rows], middles, halves, 1.0)
+        apart = np.linalg.norm(positions[rows] - self.points(other), axis=1)
+        # The last one that is entered for a row counts: the nearest one.
+        order = np.argsort(apart)[::-1]
+        order = order[apart[order] < off[rows[order]]]
+        found[rows[order]] = other[order]
 
     def behind(self, positions: Floats) -> Floats:
         """How far (R,) positions lie behind the plane across its end, m; negative before it."""
@@ -74,8 +107,9 @@ class Blend:
 
     def way(self, u: Floats) -> Floats:
         """Length (R,) from its start to u (R,), m."""
-        cell = np.minimum((u * CELLS).astype(np.int64), CELLS - 1)
-        return np.asarray(self._lengths[cell] + self._length_between(cell / CELLS, u))
+        samples = self._samples[0]
+        cell = np.minimum(np.searchsorted(samples, u, side="right"), len(samples) - 1) - 1
+        return np.asarray(self._lengths[cell] + self._length_between(samples[cell], u))
 
     def turned_off(self, u: Floats, attitudes: Floats, allowance: Allowance = EXACT) -> Floats:
         """Angle (R,) rad between attitudes (R, ..) and the orientation at u (R,), beyond an allowance.
@@ -110,6 +144,14 @@ class Blend:
     @cached_property
     def _samples(self) -> tuple[Floats, Floats]:
         u = np.linspace(0.0, 1.0, CELLS + 1)
+        for _ in range(HALVINGS):
+            rates = bernstein(u, 4) @ self._rate
+            sizes = np.linalg.norm(rates, axis=1)
+            cosines = np.sum(rates[1:] * rates[:-1], axis=1)
+            sharp = cosines < np.cos(MOST_TURN) * sizes[1:] * sizes[:-1]
+            if not sharp.any():
+                break
+            u = np.sort(np.concatenate([u, 0.5 * (u[1:] + u[:-1])[sharp]]))
         return u, self.points(u)
 
     @cached_property

@@ -12,7 +12,7 @@ from irlx.streams.joint_stream import Floats, Integers
 from irlx.verifier.geometry.allowance import EXACT, Allowance
 from irlx.verifier.geometry.blends import Blend
 from irlx.verifier.geometry.corners import Corner, distance_taken
-from irlx.verifier.geometry.curves import Curve, Pose
+from irlx.verifier.geometry.curves import Curve, Pose, rounds
 
 FIRST_LOOK = 64
 """Rows looked at together on a part at first, then twice as many, and so on."""
@@ -232,8 +232,9 @@ class ChainWay:
     ) -> NDArray[np.bool_]:
         """Which rows lie behind a sharp corner: nearer to the next leg, or going back on both."""
         following = self._legs[leg + 1].curve
-        there = np.clip(following.nearest_at_start(positions), 0.0, following.length)
-        apart = np.linalg.norm(positions - following.points(there), axis=1)
+        there = rounds(following, following.nearest_at_start(positions))[:2]
+        inside = [np.clip(at, 0.0, following.length) for at in there]
+        apart = np.min([np.linalg.norm(positions - following.points(at), axis=1) for at in inside], axis=0)
         furthest = np.maximum.accumulate(np.concatenate([[hint], way]))[1:]
         back = (furthest - way > PATH_STEP) & (apart <= off + PATH_STEP)
         # Legs may lie on each other: rounding must not tell which is nearer.

@@ -7,13 +7,14 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from irlx.promises import PATH_ORIENTATION, PATH_POSITION, PATH_STEP
 from irlx.streams.joint_stream import Floats, Integers
 from irlx.verifier.geometry.allowance import EXACT as EXACT_POSE
 from irlx.verifier.geometry.allowance import Allowance
 from irlx.verifier.geometry.blends import TANGENTS, Blend
-from irlx.verifier.geometry.curves import Curve, Pose
+from irlx.verifier.geometry.curves import Curve, Pose, rounds
 
 ON_A_LEG = 1e-8
 """Rows that are nearer to both legs than this, m, tell nothing of the blend between them."""
@@ -78,10 +79,9 @@ def distance_taken(
     corner = second.points(np.zeros(1))
     found = _Rows(*rows, first.nearest(rows[0], near), second.nearest_at_start(rows[0]))
     off = np.linalg.norm(found.positions - first.points(np.minimum(found.way, first.length)), axis=1)
-    inside = np.clip(found.there, 0.0, second.length)
-    apart = np.linalg.norm(found.positions - second.points(inside), axis=1)
+    apart = np.min([_apart(second, found.positions, way) for way in rounds(second, found.there)[:2]], axis=0)
     away = np.linalg.norm(found.positions - corner, axis=1)
-    arrived = (off > PATH_POSITION) & (((apart <= PATH_POSITION) & (found.there > 0.0)) | (away > most))
+    arrived = _arrived(second, found, off, apart, final) | ((off > PATH_POSITION) & (away > most))
     if not arrived.any() and not final:
         return None
     seen = int(np.argmax(arrived)) + 1 if arrived.any() else len(off)
@@ -92,8 +92,10 @@ def distance_taken(
     furthest = np.argsort(between)[::-1][:ASKED]
     asked = found.part(np.union1d(spread, furthest[between[furthest] > 0.0]))
     if not asked_for.may_be_less:
+        if not len(about):
+            return most
         worst = [_worst(legs, way, asked, allowance) for way in (most, 0.0)]
-        return most if not len(about) or worst[0] <= worst[1] else 0.0
+        return most if worst[0] <= worst[1] else 0.0
     if between[row] > ON_A_LEG:
         distance = _fitting(legs, most, found.positions[row], asked, allowance)
     else:
@@ -101,6 +103,25 @@ def distance_taken(
     if len(about) and _worst(legs, distance, asked, allowance) > NEAR:
         distance = _best(lambda d: _worst(legs, d, asked, allowance), distance, most)
     return distance if distance > PATH_STEP else 0.0
+
+
+def _apart(curve: Curve, positions: Floats, way: Floats) -> Floats:
+    """Distances (R,) of positions from the places of a curve at ways (R,), or its ends."""
+    return np.asarray(np.linalg.norm(positions - curve.points(np.clip(way, 0.0, curve.length)), axis=1))
+
+
+def _arrived(second: Curve, rows: _Rows, off: Floats, apart: Floats, final: bool) -> NDArray[np.bool_]:
+    """Which rows (R,), `off` the first curve and `apart` from the second one, lie on the latter.
+
+    On more than half of a circle a place before its start may be one near its end as well: that counts where
+    no row lies on its first half, and if the next row lies on it, too.
+    """
+    left = off > PATH_POSITION
+    early = left & (rows.there > 0.0) & (_apart(second, rows.positions, rows.there) <= PATH_POSITION)
+    if early.any() or not np.isfinite(second.whole):
+        return early
+    on = apart <= PATH_POSITION
+    return np.asarray(left & on & np.append(on[1:], final))
 
 
 def _fitting(
@@ -133,11 +154,11 @@ def _through(legs: tuple[Curve, Curve], most: float, position: Floats, tangents:
 def _worst(legs: tuple[Curve, Curve], distance: float, rows: _Rows, allowance: Allowance) -> float:
     """How far rows are off a path with a blend of a distance, in tolerances; the worst of them."""
     first, second = legs
-    before, behind = np.minimum(rows.way, first.length - distance), np.maximum(rows.there, distance)
-    offs = [
-        (first.points(before), allowance.turned_off(rows.rotations, first.rotations(before))),
-        (second.points(behind), allowance.turned_off(rows.rotations, second.rotations(behind))),
-    ]
+    before = np.minimum(rows.way, first.length - distance)
+    offs = [(first.points(before), allowance.turned_off(rows.rotations, first.rotations(before)))]
+    for way in rounds(second, rows.there):
+        behind = np.maximum(way, distance)
+        offs.append((second.points(behind), allowance.turned_off(rows.rotations, second.rotations(behind))))
     if distance > PATH_STEP:
         blend = Blend(first, second, distance)
         u = blend.nearest(rows.positions)

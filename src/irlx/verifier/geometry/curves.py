@@ -8,7 +8,7 @@ import numpy as np
 
 from irlx.blocks import ArcCourse
 from irlx.streams.joint_stream import Floats
-from irlx.verifier.geometry.arcs import ArcShape
+from irlx.verifier.geometry.arcs import NEARLY, WHOLE_TURN, ArcShape
 from irlx.verifier.geometry.attitudes import Attitude, SteadyTurn, Turning, ViaTurn
 
 Pose = tuple[Floats, Floats]
@@ -32,6 +32,10 @@ class Curve(Protocol):
     @property
     def room(self) -> tuple[float, float]:
         """How far from its start and from its end a blend may reach, m."""
+
+    @property
+    def whole(self) -> float:
+        """Way after which it comes by the same points again, m: the whole turn of a circle; else endless."""
 
     def nearest(self, positions: Floats, near: float) -> Floats:
         """Way (R,) to the points nearest to positions (R, 3), in order, the row before them being at `near`.
@@ -62,6 +66,7 @@ class LineCurve:
     """The straight line between two poses."""
 
     is_straight = True
+    whole = np.inf
 
     def __init__(self, start: Pose, goal: Pose) -> None:
         self._start = start[0]
@@ -106,13 +111,23 @@ class LineCurve:
 
 
 class ArcCurve:
-    """The arc of a CIRCLE; `rotations` are those at start, via point and end."""
+    """The arc of a CIRCLE; `rotations` are those at start, via point and end, `most_step` the largest angle,
+    rad, between two rows, less than a whole turn."""
 
     is_straight = False
 
-    def __init__(self, shape: ArcShape, course: ArcCourse, rotations: tuple[Floats, Floats, Floats]) -> None:
+    def __init__(
+        self,
+        shape: ArcShape,
+        course: ArcCourse,
+        rotations: tuple[Floats, Floats, Floats],
+        most_step: float = 0.0,
+    ) -> None:
         self._shape = shape
+        # A step is one back where that is the shorter way, if rows cannot be as far apart forwards.
+        self._back = float(np.clip(WHOLE_TURN - most_step, NEARLY, np.pi))
         self.length = shape.travel / shape.flatness
+        self.whole = WHOLE_TURN / shape.flatness
         self._turn: Attitude = SteadyTurn(rotations[0], rotations[2])
         self.room = 0.5 * self.length, 0.5 * self.length
         if course.turns_through_via:
@@ -127,11 +142,11 @@ class ArcCurve:
         return self._turn.angle
 
     def nearest(self, positions: Floats, near: float) -> Floats:
-        """Way (R,) along the circle, in steps of half a turn at most from the row before."""
-        whole = 2.0 * np.pi
+        """Way (R,) along the circle, in steps of half a turn at most from the row before, or as far forwards
+        as they can be."""
         last = near * self._shape.flatness
         steps = np.diff(self._shape.angles(positions), prepend=last)
-        found = last + np.cumsum((steps + np.pi) % whole - np.pi)
+        found = last + np.cumsum((steps + self._back) % WHOLE_TURN - self._back)
         return np.asarray(found / self._shape.flatness)
 
     def nearest_at_start(self, positions: Floats) -> Floats:
@@ -162,6 +177,15 @@ class ArcCurve:
     def turnings(self, way: float) -> list[Turning]:
         """Orientation and its rates at a place."""
         return _by_way(self._turn, way, self.length)
+
+
+def rounds(curve: Curve, way: Floats) -> list[Floats]:
+    """Ways (R,) at which a curve comes by the same points as at `way` (R,), these first: of a circle those of
+    all its turns up to its end."""
+    if not np.isfinite(curve.whole) or not len(way):
+        return [way]
+    turns = int((curve.length - float(np.min(way))) / curve.whole + NEARLY)
+    return [way + turn * curve.whole for turn in range(max(turns, 0) + 1)]
 
 
 def _by_way(turn: Attitude, way: float, length: float) -> list[Turning]:

@@ -38,6 +38,7 @@ class SplineCurve:
     """
 
     is_straight = False
+    whole = np.inf
 
     def __init__(self, poses: list[Pose]) -> None:
         points = np.array([pose[0] for pose in poses])

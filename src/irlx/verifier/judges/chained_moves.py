@@ -16,6 +16,7 @@ from irlx.verifier.findings.tally import Tally
 from irlx.verifier.geometry.chains import ChainWay, Placed
 from irlx.verifier.geometry.rotations import angle_between
 from irlx.verifier.geometry.task_turns import followed_off, turned_off
+from irlx.verifier.judges.chain_start import start_of_chain
 from irlx.verifier.tools import Pose
 
 HANDS_OVER = 2
@@ -98,7 +99,7 @@ class ChainRows:
         self._speeds, self._sharp = np.zeros((3, 1)), np.zeros(1, dtype=np.bool_)
         self._furthest, self._unknown = 0.0, False
         self._fresh = 0
-        """Of the rows judged next so many have only one known row before them: no change of speed is told."""
+        """So many of the rows judged next have fewer than two known ones before them (`ChainStart`)."""
         self._wanted = start[1][None, :3]
         first = legs.legs[0].curve
         self._reaches = min(start_reach, first.room[0]), end_reach(chain[-1])
@@ -109,8 +110,8 @@ class ChainRows:
     def take(self, poses: Pose, rows: Integers, block: int, final: bool) -> None:
         """Look at the next rows, those of one block; `final` are the last ones of the chain."""
         if self._begun is not None:
-            poses, rows = self._behind_start(self._begun, poses, rows, block)
-            if self._begun is not None and not final:
+            poses, rows = self._behind_start(self._begun, poses, rows, block, final)
+            if self._begun is not None:
                 return
         if self._held is not None:
             poses, rows = self._before_end(self._held, poses, rows, block)
@@ -129,56 +130,35 @@ class ChainRows:
         self._waiting = waiting.without(count)
 
     def _behind_start(
-        self, begun: _Waiting, poses: Pose, rows: Integers, block: int
+        self, begun: _Waiting, poses: Pose, rows: Integers, block: int, final: bool
     ) -> tuple[Pose, Integers]:
-        """The rows behind the corner to the PTP before, two of which have to be on the path."""
+        """The rows behind the corner to the PTP before, and behind those that tell where it ends."""
         begun.add(poses, rows, block)
-        positions, rotations = begun.positions[1:], begun.rotations[1:]
-        curve, corner = self._legs.legs[0].curve, begun.positions[0]
-        start = self._chain[0].start.pose
-        assert start is not None
-        way = curve.nearest(positions, 0.0)
-        inside = np.clip(way, 0.0, curve.length)
-        on = np.linalg.norm(positions - curve.points(inside), axis=1) <= PATH_POSITION
-        on &= turned_off(rotations, curve.rotations(inside)) <= PATH_ORIENTATION
-        beyond = np.flatnonzero(on & (way >= self._reaches[0] - PATH_STEP))
-        count = int(beyond[0]) if beyond.size else len(on)
-        away = np.linalg.norm(positions[:count] - corner, axis=1)
-        if count + 1 >= len(on):
-            if away.size and not away[-1] <= self._reaches[0] + PATH_POSITION:
-                # It ought to be on its path by now.
-                self._tallies.path[0].add(begun.rows[count - 1 : count], away[-1:], self._reaches[0])
-            nothing = np.zeros((0, 3)), rotations[:0]
-            return nothing, rows[:0]
-        self._tallies.path[0].add(
-            begun.rows[:count],
-            away,
-            self._reaches[0] + PATH_POSITION,
-            rank=away / max(self._reaches[0], PATH_POSITION) * PATH_POSITION,
-        )
+        taken, reach = (begun.positions[1:], begun.rotations[1:]), self._reaches[0]
+        corner, legs = begun.positions[0], self._legs.legs
+        start = start_of_chain(taken, legs, corner, reach, self._allowance, final)
+        if start is None:
+            return (taken[0][:0], taken[1][:0]), rows[:0]
         self._begun = None
-        last = count + 1
-        if not on[last] and self._leaves_first_leg(float(way[last])):
-            # So short is the leg that the second row lies on the blend to the next one already.
-            last, self._fresh = count, 1
-        left = begun.without(last + 1)
+        in_it, last = slice(start.corner), start.placed
+        away = np.linalg.norm(taken[0][in_it] - corner, axis=1)
+        allowed = reach + PATH_POSITION
+        rank = away / max(reach, PATH_POSITION) * PATH_POSITION
+        self._tallies.path[0].add(begun.rows[in_it], away, allowed, rank=rank)
+        left = begun.without(last)
         self._waiting = _Waiting((left.positions[0], left.rotations[0]))
         if self._held is not None:
             self._held = _Waiting((left.positions[0], left.rotations[0]))
-        self._alongs, self._points = way[[count, last]], positions[[count, last]]
-        self._furthest = float(way[last])
-        self._hint = self._furthest if len(self._legs.legs) == 1 else 0.0
+        self._alongs, self._points = start.ways, begun.positions[[max(last - 1, 0), last]]
+        self._furthest, self._fresh = float(start.ways[-1]), start.fresh
+        self._hint = self._furthest if len(legs) == 1 else 0.0
         self._way.begin_at(self._furthest)
-        self._wanted = curve.rotations(way[last : last + 1])
-        off = np.linalg.norm(positions[last] - curve.points(way[last : last + 1]), axis=1)
-        self._tallies.path[0].add(begun.rows[last : last + 1], off, PATH_POSITION)
+        way, curve = start.ways[-1:], legs[0].curve
+        self._wanted = curve.rotations(way)
+        if last > start.corner:
+            off = np.linalg.norm(left.positions[:1] - curve.points(way), axis=1)
+            self._tallies.path[0].add(begun.rows[last - 1 : last], off, PATH_POSITION)
         return (left.positions[1:], left.rotations[1:]), left.rows
-
-    def _leaves_first_leg(self, way: float) -> bool:
-        """Whether a place on the first leg may lie where the blend at its end has taken over."""
-        first = self._legs.legs[0]
-        blend = first.corner.distance if len(self._legs.legs) > 1 else 0.0
-        return way > first.curve.length - blend - PATH_STEP
 
     def _before_end(self, held: _Waiting, poses: Pose, rows: Integers, block: int) -> tuple[Pose, Integers]:
         """The rows that do not belong to the corner to the PTP behind; others are held."""
@@ -235,7 +215,7 @@ class ChainRows:
         near = self._near(placed, np.abs(np.diff(alongs[1:])))
         self._add_speed(rows, placed, alongs, near)
         self._add_acceleration(rows, placed, alongs, near)
-        self._alongs = alongs[-2:]
+        self._alongs, self._fresh = alongs[-2:], max(self._fresh - count, 0)
 
     def _add_progress(self, rows: Integers, placed: Placed) -> None:
         furthest = np.maximum.accumulate(np.concatenate([[self._furthest], placed.along]))
@@ -284,14 +264,15 @@ class ChainRows:
         with np.errstate(divide="ignore"):
             speed = np.minimum(speed, np.sqrt(acc / placed.bend))
         moved = np.linalg.norm(np.diff(self._waiting.positions[: count + 1], axis=0), axis=1)
-        turned = self._turned(placed)
+        turned, told = self._turned(placed), slice(max(self._fresh - 1, 0), None)
         for way, bound, unit in (
             (np.maximum(moved, np.abs(np.diff(alongs[1:]))), speed, "m/s"),
             (turned, np.where(self._allowance.turns, np.inf, turn), "rad/s"),
         ):
             rates = way / dt
             high = bound * (1.0 + PROGRAM_EXCESS) + 2.0 * PATH_STEP / dt
-            self._tallies.speed.add(rows, rates, bound, ~(rates <= high), rates / high, unit)
+            offends, use = ~(rates <= high), rates / high
+            self._tallies.speed.add(rows[told], rates[told], bound[told], offends[told], use[told], unit)
 
     def _turned(self, placed: Placed) -> Floats:
         """Angles (R,) rad from row to row; where not all turns count, those of the path itself."""
@@ -314,7 +295,7 @@ class ChainRows:
         bound = np.concatenate([self._accelerations, allowed])
         bound = np.max([bound[:-2], bound[1:-1], bound[2:]], axis=0)
         self._accelerations = np.concatenate([self._accelerations, allowed])[-2:]
-        fresh, self._fresh = self._fresh, 0
+        fresh = self._fresh
         self._add_rates(rows[fresh:], np.abs(np.diff(alongs, n=2))[fresh:], bound[fresh:])
         points = np.concatenate([self._points, self._waiting.positions[1 : count + 1]])
         self._points = points[-2:]

@@ -94,7 +94,7 @@ class ToolMoveChecks:
     def _chain_of(self, chain: tuple[Demand, ...]) -> ChainRows | None:
         tallies = ChainTallies(self._goal, self._path, self._progress, self._speed, self._acceleration)
         try:
-            return ChainRows(chain, legs_of(chain), self._dt, tallies, self._start_reach(chain[0]))
+            return ChainRows(chain, legs_of(chain, self._dt), self._dt, tallies, self._start_reach(chain[0]))
         except Unplaced as error:
             self._skipped |= {demand.move.block.id: str(error) for demand in chain}
         except NoCurve:

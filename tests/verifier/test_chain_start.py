@@ -1,0 +1,98 @@
+"""Where the rows of a chain come out of the corner behind a PTP: rows of hand-made ways behind loose ones."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from irlx.verifier.geometry.allowance import EXACT
+from irlx.verifier.geometry.chains import Leg
+from irlx.verifier.geometry.corners import Corner
+from irlx.verifier.geometry.curves import LineCurve
+from irlx.verifier.judges.chain_start import start_of_chain
+from made_chains import lines, pose_at
+from passing_moves import way_of
+
+pytestmark = [pytest.mark.req("MOT-06"), pytest.mark.req("STR-06")]
+
+START = np.array([0.5, 0.0, 0.5])
+WAY = lines(
+    (START, Rotation.identity()), [(0.1, 0.0, 0.0), (0.0, 0.12, 0.0)], [(0.1, 0.0, 0.0), (0.0, 0.0, 0.2)]
+)
+BLEND = 0.05
+"""Half of the first line, so that it is left where a corner of `REACH` ends."""
+REACH = 0.05
+
+LOOSE = START + np.array(
+    [[-0.02, 0.01, 0.03], [0.0, 0.008, 0.02], [0.02, 0.004, 0.008], [0.04, 0.001, 0.001]]
+)
+
+
+def legs(corner: Corner) -> tuple[Leg, ...]:
+    ends = [[pose_at(curve, way) for way in (0.0, curve.length)] for curve in WAY]
+    first, second = (LineCurve(*((p, r.as_matrix()) for p, r in pair)) for pair in ends)
+    return Leg(first, corner), Leg(second, Corner(0.0))
+
+
+def rows(ways: np.ndarray, loose: np.ndarray = LOOSE) -> tuple[np.ndarray, np.ndarray]:
+    """Loose rows in the corner, then those on the way."""
+    points, turns = way_of(WAY, [BLEND]).poses(ways)
+    attitudes = np.concatenate([Rotation.identity(len(loose)).as_matrix(), turns])
+    return np.concatenate([loose, points]), attitudes
+
+
+TOLD = Corner(BLEND)
+CORNERS = {
+    "a blend that is told": TOLD,
+    "a PATH may stop": Corner(BLEND, may_stop=True),
+    "C_PASS": Corner(BLEND, may_be_less=True),
+}
+
+
+@pytest.mark.parametrize("name", CORNERS)
+def test_the_first_row_may_lie_on_the_blend_already(name: str) -> None:
+    ways = np.linspace(REACH + 0.004, 0.17, 12)
+    start = start_of_chain(rows(ways), legs(CORNERS[name]), START, REACH, EXACT, True)
+    assert start is not None
+    assert (start.corner, start.placed, start.fresh) == (len(LOOSE), len(LOOSE), 2)
+    assert start.ways.tolist() == [REACH, REACH]
+
+
+def test_a_row_on_the_first_leg_is_taken_though_the_corner_might_reach_farther() -> None:
+    ways = np.array([0.047, 0.065, 0.08, 0.1, 0.12, 0.14])
+    start = start_of_chain(rows(ways), legs(TOLD), START, REACH, EXACT, False)
+    assert start is not None
+    assert (start.corner, start.placed, start.fresh) == (len(LOOSE), len(LOOSE) + 1, 1)
+    assert start.ways == pytest.approx([0.047, 0.047], abs=1e-9)
+
+
+def test_a_row_off_the_way_and_out_of_reach_is_where_it_begins() -> None:
+    """It cannot be hidden in the corner: what judges the way finds it off."""
+    loose = np.vstack([LOOSE, START + np.array([0.04, 0.05, 0.0])])
+    ways = np.linspace(REACH + 0.004, 0.17, 12)
+    start = start_of_chain(rows(ways, loose), legs(TOLD), START, REACH, EXACT, True)
+    assert start is not None
+    assert (start.corner, start.placed, start.fresh) == (len(LOOSE), len(LOOSE), 2)
+
+
+def test_rows_that_never_leave_the_corner_may_lie_on_the_way_in_the_end() -> None:
+    """Of a way so small that all of it is within reach; and of one that was not run there are no rows."""
+    ways, wide = np.array([0.09, 0.13, 0.17, 0.17]), 0.3
+    start = start_of_chain(rows(ways), legs(TOLD), START, wide, EXACT, True)
+    assert start is not None
+    assert start.corner == len(LOOSE)
+    none = start_of_chain(rows(ways[:0]), legs(TOLD), START, wide, EXACT, True)
+    assert none is not None
+    assert (none.corner, none.placed) == (len(LOOSE), len(LOOSE))
+
+
+def test_it_waits_for_rows_that_tell() -> None:
+    ways = np.linspace(REACH + 0.004, 0.17, 12)
+    positions, attitudes = rows(ways)
+    for seen in (3, len(LOOSE) + 2):
+        first = positions[:seen], attitudes[:seen]
+        assert start_of_chain(first, legs(CORNERS["C_PASS"]), START, REACH, EXACT, False) is None
+    start = start_of_chain((positions, attitudes), legs(CORNERS["C_PASS"]), START, REACH, EXACT, False)
+    assert start is not None
+    assert start.corner == len(LOOSE)
