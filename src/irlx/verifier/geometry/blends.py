@@ -60,13 +60,15 @@ class Blend:
         samples, points = self._samples
         apart = np.sum((positions[:, None] - points) ** 2, axis=2)
         nearest = np.argmin(apart, axis=1)
+        if len(samples) == CELLS + 1:
+            return nearest_parameters(self._jet_at, positions, samples[nearest], 1.0 / CELLS, 1.0)
         cells = np.diff(samples)
         widths = np.maximum(np.append(cells, 0.0), np.insert(cells, 0, 0.0))[nearest]
         found = nearest_parameters(self._jet_at, positions, samples[nearest], widths, 1.0)
+        # In a narrow bend the nearest sample may be one of the other side.
         off = np.linalg.norm(positions - self.points(found), axis=1)
         unsure = np.flatnonzero((off > ON_IT) & ~self._beyond(positions, found))
         if unsure.size:
-            # In a narrow bend the nearest sample may be one of the other side.
             least = np.sqrt(np.minimum(apart[unsure, :-1], apart[unsure, 1:])) - 0.5 * np.diff(self._lengths)
             rows, there = np.nonzero(least < off[unsure, None])
             self._seek_in(there, unsure[rows], positions, found, off)
