@@ -9,6 +9,7 @@ import sys
 import pytest
 
 import irlx
+from irlx.cli import main as entry
 from irlx.cli.standard_channels import OutputLost, _Descriptor
 from irlx.cli.stopping import Stopped, heard_signal, heed_signals, stopped_code
 from irlx.streams import read_stream
@@ -79,6 +80,24 @@ def test_a_pipe_that_does_not_wait_gets_everything():
         os.close(kept)
         os.close(out)
     assert reader.communicate(timeout=10)[0].strip() == b"300000"
+
+
+def test_a_reader_that_has_read_enough(monkeypatch, capsys):
+    """Nothing is wrong then: what follows is dropped."""
+
+    class Left(io.StringIO):
+        def write(self, _):
+            raise BrokenPipeError
+
+        def fileno(self):
+            return 77
+
+    dropped = []
+    monkeypatch.setattr(entry, "drop_output", dropped.append)
+    monkeypatch.setattr(sys, "stdout", Left())
+    assert entry.main(["explain", "IRL203"]) == 0
+    assert dropped == [77]
+    assert capsys.readouterr().err == ""
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")

@@ -9,9 +9,10 @@ from pathlib import Path
 import pytest
 
 import irlx
+from irlx.cli import main as entry
 from irlx.cli import output
 from irlx.cli.little_memory import expect_little_memory
-from irlx.cli.main import _NO_MEMORY, main, use_one_thread
+from irlx.cli.main import _NO_MEMORY, main
 from irlx.report.figures import Figures
 from irlx.streams import KNOWN_ENDINGS
 from stream_files import content_of
@@ -127,12 +128,22 @@ def test_libraries_for_which_there_is_no_room(monkeypatch):
     assert keeper.find_spec("numpy", None) is None
 
 
-def test_one_thread_whatever_is_asked_for(monkeypatch):
-    """The last bits of programs/snake are other ones with two; the console entry calls this first."""
-    monkeypatch.setattr(os, "environ", {"OPENBLAS_NUM_THREADS": "2", "HOME": "/"})
-    use_one_thread()
-    assert os.environ["OPENBLAS_NUM_THREADS"] == os.environ["OMP_NUM_THREADS"] == "1"
-    assert os.environ["HOME"] == "/"
+def test_what_the_console_entry_sees_to_first(monkeypatch):
+    """One thread of linear algebra, whatever is asked for: with two, last bits of programs/snake differ."""
+    seen = []
+
+    def command():
+        seen.append((os.environ["OPENBLAS_NUM_THREADS"], os.environ["OMP_NUM_THREADS"]))
+        return 0
+
+    monkeypatch.setattr(os, "environ", {"OPENBLAS_NUM_THREADS": "2"})
+    monkeypatch.setattr(entry, "main", command)
+    steps = ("heed_signals", "take_channels", "expect_little_memory", "ignore_signals")
+    for name in steps:
+        monkeypatch.setattr(entry, name, lambda name=name: seen.append(name))
+    with pytest.raises(SystemExit, match="0"):
+        entry.entry_point()
+    assert seen == [*steps[:3], ("1", "1"), steps[3]]
 
 
 PLAIN = {"TZ": "nonsense", "LC_ALL": "C", "PYTHONUTF8": "0"}

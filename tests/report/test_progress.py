@@ -86,6 +86,21 @@ def test_the_line_fits_and_can_be_printed(monkeypatch, width: int, encoding: str
     assert line.endswith(("...", "\N{HORIZONTAL ELLIPSIS}", ";"))
 
 
+def test_a_run_that_is_interrupted_leaves_the_cursor_visible(monkeypatch) -> None:
+    class Terminal(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    shown = Terminal()
+    monkeypatch.setattr(sys, "stderr", shown)
+    monkeypatch.setenv("TERM", "xterm")
+    progress = LiveProgress(Course(0.01, 2, locate))
+    with pytest.raises(KeyboardInterrupt), progress:
+        raise KeyboardInterrupt
+    assert shown.getvalue().count("\x1b[?25l") == 1
+    assert shown.getvalue().rfind("\x1b[?25h") > shown.getvalue().rfind("\x1b[?25l")
+
+
 def test_a_terminal_that_can_only_add_lines(clock, capsys) -> None:
     progress = LineProgress(Course(0.01, 2, locate))
     for tick in range(1000):
