@@ -25,6 +25,8 @@ BEGIN
   MOVE_INC LIN POSITION(60, 40, 0);
 ENDPROGRAM
 """
+NO_TEXT = os.fsdecode(b"p\xff")
+"""A name that is no UTF-8, as any bytes may be one."""
 PLANAR = '[robot]\nmodel = "planar3"\n[motion]\ntick_ms = 10\n'
 STRANGE = {
     "fifo": os.mkfifo,
@@ -156,12 +158,12 @@ SETTINGS = [
 
 @pytest.fixture(scope="module")
 def undisturbed(tmp_path_factory):
-    """A program, and what a run inside this process writes of it in every form."""
+    """A program whose name is no text, and what a run inside this process writes of it in every form."""
     folder = tmp_path_factory.mktemp("undisturbed")
-    (folder / "p.irl").write_text(SHORT)
-    (folder / "p.toml").write_text(PLANAR)
+    (folder / f"{NO_TEXT}.irl").write_text(SHORT)
+    (folder / f"{NO_TEXT}.toml").write_text(PLANAR)
     outputs = [folder / f"p{ending}" for ending in (*KNOWN_ENDINGS, ".html")]
-    irlx.record(folder / "p.irl", outputs)
+    irlx.record(folder / f"{NO_TEXT}.irl", outputs)
     return folder, {path.name: content_of(path) for path in outputs}
 
 
@@ -170,7 +172,7 @@ def test_the_same_bytes_whatever_is_set(undisturbed, environment, tmp_path, pyth
     """Another process, folder, locale, zone, seed of hashes, number of threads, and without assert."""
     made, expected = undisturbed
     asked = [word for name in expected for word in ("-o" if name[-4:] != "html" else "--html", name)]
-    call = [sys.executable, *python, "-m", "irlx", "run", str(made / "p.irl"), *asked, "--quiet"]
+    call = [sys.executable, *python, "-m", "irlx", "run", str(made / f"{NO_TEXT}.irl"), *asked, "--quiet"]
     given = {**environment, **variables, "TMPDIR": "/nonexistent"}
     # Bytecode of -O and -OO may be kept: to compile all libraries anew is most of what such a process costs.
     del given["PYTHONDONTWRITEBYTECODE"]
@@ -179,8 +181,21 @@ def test_the_same_bytes_whatever_is_set(undisturbed, environment, tmp_path, pyth
     assert {name: content_of(tmp_path / name) for name in expected} == expected
 
 
+def test_a_figure_of_a_program_whose_name_is_no_text(undisturbed, inside):
+    folder, _ = undisturbed
+    assert inside("plot", folder / "p.irdata", "-o", "p.svg").returncode == 0
+
+
+def test_a_folder_that_is_gone(folder, monkeypatch, capsys):
+    (folder / "gone").mkdir()
+    monkeypatch.chdir(folder / "gone")
+    (folder / "gone").rmdir()
+    assert main(["run", "../p.irl", "-o", "p.csv"]) == 2
+    assert "error IRL0" in capsys.readouterr().err
+
+
 def test_samples_one_by_one_are_those_of_the_run(undisturbed):
     folder, _ = undisturbed
-    run, samples = irlx.run(folder / "p.irl"), list(irlx.stream(folder / "p.irl"))
+    run, samples = irlx.run(folder / f"{NO_TEXT}.irl"), list(irlx.stream(folder / f"{NO_TEXT}.irl"))
     assert [one.q.tobytes() for one in samples] == [row.tobytes() for row in run.q]
     assert [one.tool.tobytes() for one in samples] == [row.tobytes() for row in run.tool]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Mapping
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, Protocol
 from unicodedata import normalize
@@ -42,7 +43,13 @@ def cell_table(file: Readable) -> dict[str, Any]:
     """A cell file as a table, empty where it is none."""
     try:
         content = whole_file(file) if isinstance(file, Path) else file.read_bytes()
-        table: dict[str, Any] = tomllib.loads(content.decode("utf-8-sig"))
+        return _table(content)
     except (OSError, ValueError, RecursionError):
         return {}
+
+
+@lru_cache(maxsize=2)
+def _table(content: bytes) -> dict[str, Any]:
+    """A cell as a table, not to be written to: of frames and of obstacles it is asked in turn."""
+    table: dict[str, Any] = tomllib.loads(content.decode("utf-8-sig"))
     return table

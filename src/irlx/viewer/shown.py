@@ -12,6 +12,7 @@ from irlx.blocks import ObstacleBlock
 from irlx.cell.cell import Cell
 from irlx.diagnostics import Diagnostic, SourceText
 from irlx.report.events import Slowed
+from irlx.report.legible import legible
 from irlx.report.lines import Line as TextLine
 from irlx.report.run import Run
 from irlx.report.terminal import summary_lines
@@ -95,7 +96,7 @@ def shown_stream(stream: JointStream, name: str, cell: Cell, text: SourceText | 
     state = "complete" if stream.complete else "INCOMPLETE"
     lines = (
         TextLine(None, f"{name}: {state}, {(rows - 1) * header.dt:.6g} s"),
-        TextLine("program", header.program_name or "not named"),
+        TextLine("program", legible(header.program_name or "not named")),
         TextLine("samples", f"{rows} of {header.joints} joints, {header.dt * 1e3:g} ms a tick"),
     )
     return Shown(cell, stream, text, lines)

@@ -12,6 +12,7 @@ from irlx.blocks import MoveBlock, ReconfigureBlock
 from irlx.diagnostics import Diagnostic, Place, report
 from irlx.report.clearances import Clearances
 from irlx.report.curves import limits_over, outline_of_stream, tool_rates
+from irlx.report.legible import legible
 from irlx.report.plot.curves import Bounds, Curves, MoveMark, Track
 from irlx.report.plot.limit_spans import limit_spans, time_of
 from irlx.report.plot.quantity import JOINT_QUANTITIES, Quantity
@@ -75,8 +76,8 @@ def _curves_of(
     if Quantity.PATH_SPEED in show:
         tracks[Quantity.PATH_SPEED] = _tool_tracks(stream, pace.speed, pace.turn, inside)
     curves = Curves(
-        name=subject.name,
-        title=header.program_name or subject.name,
+        name=legible(subject.name),
+        title=legible(header.program_name or subject.name),
         robot=header.robot_name,
         complete=stream.complete,
         t=stream.t[inside],

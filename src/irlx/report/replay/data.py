@@ -16,6 +16,7 @@ from irlx.diagnostics import Diagnostic, report
 from irlx.language.keywords import keyword_table
 from irlx.report.appearance.build import TRIANGLES, appearance_of
 from irlx.report.events import LimitActive, Slowed
+from irlx.report.legible import legible
 from irlx.report.replay.events import replay_events
 from irlx.report.replay.frames import Columns
 from irlx.report.replay.gathering import Gathered
@@ -57,8 +58,25 @@ def replay_json(replay: Replay, small: bool = False) -> tuple[bytes, tuple[Diagn
     if count > listed:
         lacking.append(report("IRL723", listed=f"{listed:,}", count=f"{count:,}"))
     plain["diagnostics"] = [_told(one) for one in (*replay.diagnostics, *lacking)]
+    return _json(plain), tuple(lacking)
+
+
+def _json(plain: Plain) -> bytes:
     options = orjson.OPT_SERIALIZE_NUMPY | orjson.OPT_NON_STR_KEYS
-    return orjson.dumps(plain, option=options), tuple(lacking)
+    try:
+        return orjson.dumps(plain, option=options)
+    except orjson.JSONEncodeError:
+        # Names of files need not be text, and stand in many a place.
+        return orjson.dumps(_legible(plain), option=options)
+
+
+def _legible(value: Any) -> Any:
+    """The same with all texts legible."""
+    if isinstance(value, str):
+        return legible(value)
+    if isinstance(value, dict):
+        return {key: _legible(entry) for key, entry in value.items()}
+    return [_legible(entry) for entry in value] if isinstance(value, list | tuple) else value
 
 
 def _told(diagnostic: Diagnostic) -> str:

@@ -7,6 +7,8 @@ from functools import cache
 from html import escape
 from importlib.resources import files
 
+from irlx.report.legible import legible
+
 _FOLDER = files("irlx.report") / "page"
 _MARK = re.compile(r"\{\{(title|style|script|data)\}\}")
 _END_OF_SCRIPT = re.compile(r"</(?=script)", re.IGNORECASE)
@@ -18,7 +20,7 @@ def page_of(title: str, data: bytes) -> bytes:
     Text of programs may hold anything: nothing of it ends the element that it stands in, nor opens another.
     """
     parts = {
-        "title": escape(title),
+        "title": escape(legible(title)),
         "style": _asset("page.css"),
         "script": _END_OF_SCRIPT.sub(r"<\\/", _asset("page.js")),
         "data": _harmless(data.decode("utf-8")),
