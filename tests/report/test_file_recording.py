@@ -14,6 +14,7 @@ from irlx.report import file_recording
 from irlx.report.figures import Figures
 from irlx.streams import KNOWN_ENDINGS, StreamWriter, read_stream
 from irlx.streams.error import cannot_write
+from irlx.streams.npz_writer import NpzWriter
 
 pytestmark = pytest.mark.req("STR-05")
 
@@ -173,6 +174,20 @@ def test_an_interrupt_while_rows_are_written_leaves_whole_rows(
     assert np.array_equal(one.q, two.q)
     assert len(one.q) == caught.value.run.summary.samples
     assert not one.complete
+
+
+def test_memory_that_runs_out_at_the_very_end_leaves_nothing_behind(
+    program: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The file before is there, the others are as if they had never been asked for."""
+
+    def scarce(writer: NpzWriter, complete: bool) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr(NpzWriter, "_put_end", scarce)
+    with pytest.raises(MemoryError):
+        irlx.record(program, [tmp_path / "a.csv", tmp_path / "a.npz", tmp_path / "a.jsonl"])
+    assert visible(tmp_path) == ["a.csv", "p.irl", "p.toml"]
 
 
 def test_names_of_partial_files() -> None:

@@ -110,7 +110,7 @@ class _Files:
         try:
             for path in outputs:
                 self._writers.append(open_writer(path, header))
-        except StreamError:
+        except BaseException:
             self.abort()
             raise
 
@@ -134,14 +134,15 @@ class _Files:
             return (), ()
         names: list[Path] = []
         failures: list[Diagnostic] = []
-        writers, self._writers = self._writers, []
-        for writer in writers:
+        # What has been closed has nothing left to be aborted; where memory runs out, the others still do.
+        for writer in self._writers:
             name = writer.path if complete else partial_name(writer.path)
             try:
                 writer.close(complete, name)
                 names.append(name)
             except StreamError as failure:
                 failures += failure.diagnostics
+        self._writers.clear()
         return tuple(names), tuple(failures)
 
     def abort(self) -> None:

@@ -26,7 +26,7 @@ _CORRECTED = 1e-6
 """Part of a step that its correction may be; its square is what the correction leaves of it."""
 
 # Libraries of linear algebra take their working memory with the first matrix that they factor, and where none
-# is left by then they try for ever. Here, where they are loaded, nothing else has taken it yet, and the command
+# is left by then they try for ever. Here, where they are loaded, nothing else has it yet, and the command
 # line has seen to it that there is enough.
 dposv(np.eye(1), np.ones(1))
 np.linalg.solve(np.eye(1), np.ones(1))
