@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from irlx.blocks import ArcCourse, PoseTarget
 from irlx.verifier.geometry.allowance import EXACT
+from irlx.verifier.geometry.arcs import arc_shape
 from irlx.verifier.geometry.chains import Leg
 from irlx.verifier.geometry.corners import Corner
-from irlx.verifier.geometry.curves import LineCurve
-from irlx.verifier.judges.chain_start import start_of_chain
+from irlx.verifier.geometry.curves import ArcCurve, LineCurve
+from irlx.verifier.judges.chain_start import ChainStart, start_of_chain
 from made_chains import lines, pose_at
 from passing_moves import way_of
 
@@ -96,3 +98,37 @@ def test_it_waits_for_rows_that_tell() -> None:
     start = start_of_chain((positions, attitudes), legs(CORNERS["C_PASS"]), START, REACH, EXACT, False)
     assert start is not None
     assert start.corner == len(LOOSE)
+
+
+CIRCLE_RADIUS, TWICE = 5e-5, 4.0 * np.pi
+
+
+def round_a_circle(ways: np.ndarray) -> tuple[ChainStart | None, int]:
+    """Loose rows, then some twice round a circle, half of which the corner may take; how many are loose."""
+    via, end = (np.array([np.sin(a), 1.0 - np.cos(a), 0.0]) * CIRCLE_RADIUS for a in (2.0, 4.0))
+    shape = arc_shape(START, START + via, START + end, TWICE)
+    assert shape is not None
+    circle = ArcCurve(shape, ArcCourse(PoseTarget((0.0, 0.0, 0.0), None)), (np.eye(3),) * 3)
+    loose = START + CIRCLE_RADIUS * np.array([[-3.0, 1.0, 2.0], [0.0, -1.0, 1.0], [1.5, 1.0, 0.4]])
+    angles = ways[:, None]
+    points = START + CIRCLE_RADIUS * np.hstack([np.sin(angles), 1.0 - np.cos(angles), 0.0 * angles])
+    positions = np.concatenate([loose, points])
+    rows = positions, np.tile(np.eye(3), (len(positions), 1, 1))
+    return start_of_chain(rows, (Leg(circle, Corner(0.0)),), START, 0.5 * circle.length, EXACT, True), len(
+        loose
+    )
+
+
+def test_rounds_of_a_circle_that_the_corner_takes_are_counted_from_its_end() -> None:
+    ways = np.append(np.arange(0.5 * TWICE + 0.2, TWICE, 0.4), [TWICE, TWICE])
+    start, loose = round_a_circle(ways)
+    assert start is not None
+    assert (start.corner, start.placed) == (loose, loose + 2)
+    assert start.ways == pytest.approx(CIRCLE_RADIUS * ways[:2], abs=1e-12)
+
+
+def test_more_rounds_than_the_corner_takes_are_missed() -> None:
+    """Half a round more is left out than the corner may take, and one row is off: nothing of it is hidden."""
+    ways = np.append(np.arange(0.75 * TWICE, TWICE, 0.4), [TWICE, TWICE])
+    start, loose = round_a_circle(ways)
+    assert start is None or start.ways[-1] < CIRCLE_RADIUS * (ways[start.placed - loose - 1] - 1.0)

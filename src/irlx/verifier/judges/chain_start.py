@@ -12,7 +12,7 @@ from irlx.promises import PATH_ORIENTATION, PATH_POSITION, PATH_STEP
 from irlx.streams.joint_stream import Floats
 from irlx.verifier.geometry.allowance import Allowance
 from irlx.verifier.geometry.chains import ChainWay, Leg
-from irlx.verifier.geometry.curves import Pose
+from irlx.verifier.geometry.curves import Curve, Pose
 from irlx.verifier.geometry.task_turns import turned_off
 
 
@@ -40,8 +40,12 @@ def start_of_chain(
     They do where one lies on the first leg beyond the reach. Where the next blend begins there already no row
     may do so: then where one is farther away than the reach, those from the first one on that lie on the way.
     """
-    positions, count = rows[0], len(rows[0])
-    way, on = _on_first_leg(rows, legs[0])
+    positions, count, only = rows[0], len(rows[0]), legs[0].curve
+    if len(legs) == 1 and only.length >= only.whole and reach >= 0.5 * only.whole:
+        counted = _counted_from_end(rows, only, reach) if final else None
+        if counted is not None or not final:
+            return counted
+    way, on = _on_first_leg(rows, legs[0].curve)
     first = _first_of(on & (way >= reach - PATH_STEP))
     away = _first_of(np.linalg.norm(positions - start, axis=1) > reach + PATH_POSITION)
     if away < first or (final and first == count):
@@ -63,13 +67,26 @@ def start_of_chain(
     return ChainStart(first, second + 1, way[[first, second]])
 
 
-def _on_first_leg(rows: Pose, leg: Leg) -> tuple[Floats, NDArray[np.bool_]]:
-    """Ways (R,) of rows along the first leg, and which of them lie on it."""
+def _counted_from_end(rows: Pose, circle: Curve, reach: float) -> ChainStart | None:
+    """The same on a circle of which the corner may take half a turn or more: where rows end tells how much it
+    takes. None where they do not come onto it about as far as the corner reaches, or do not stay on it."""
+    way = circle.nearest(rows[0], 0.0)
+    way = way + circle.whole * np.round((circle.length - way[-1]) / circle.whole)
+    way, on = _on_first_leg(rows, circle, way)
+    first = len(on) - _first_of(~on[::-1])
+    first += _first_of(way[first:] >= reach - PATH_STEP)
+    if first + 1 >= len(on) or way[first] > reach + 1.5 * (way[first + 1] - way[first]):
+        return None
+    return ChainStart(first, first + 2, way[[first, first + 1]])
+
+
+def _on_first_leg(rows: Pose, curve: Curve, way: Floats | None = None) -> tuple[Floats, NDArray[np.bool_]]:
+    """Ways (R,) of rows along the first leg, if they are not told, and which of them lie on it."""
     positions, rotations = rows
-    way = leg.curve.nearest(positions, 0.0)
-    inside = np.clip(way, 0.0, leg.curve.length)
-    on = np.linalg.norm(positions - leg.curve.points(inside), axis=1) <= PATH_POSITION
-    return way, on & (turned_off(rotations, leg.curve.rotations(inside)) <= PATH_ORIENTATION)
+    way = curve.nearest(positions, 0.0) if way is None else way
+    inside = np.clip(way, 0.0, curve.length)
+    on = np.linalg.norm(positions - curve.points(inside), axis=1) <= PATH_POSITION
+    return way, on & (turned_off(rotations, curve.rotations(inside)) <= PATH_ORIENTATION)
 
 
 def _may_leave(legs: tuple[Leg, ...], way: float) -> bool:
