@@ -12,6 +12,7 @@ from irlx.pacing.slowdown.model import Model
 from irlx.robot.limits import JointLimits
 from irlx.transform.criteria.posture import Posture
 from irlx.transform.fibre import Fibre
+from irlx.transform.nearest import nearest_from, nearest_in_bounds
 from irlx.transform.posture_search import closest, nearest_approach, nearest_posture
 from irlx.transform.qp.proxqp import ProxQpSolver
 from irlx.transform.step_bounds import StepLimiter
@@ -332,3 +333,27 @@ def test_nothing_is_found_for_a_pose_out_of_reach(arm7) -> None:
     search = nearest_posture(arm7.kinematics, ProxQpSolver(), rotation, far, *args)
     assert search.q is None
     assert search.nearest.distance == pytest.approx(0.01, rel=0.05)
+
+
+@pytest.mark.req("MOT-22")
+@pytest.mark.parametrize("beyond", [0.0, 0.4])
+def test_searches_side_by_side_find_what_each_finds_alone(arm7, beyond: float) -> None:
+    """From every start, whether the pose can be reached or not; of frozen joints no bit changes."""
+    rotation, position = arm7.kinematics.tool_pose(np.clip(arm7.q + 0.2, arm7.lower, arm7.upper))
+    target = arm7.kinematics.target(rotation, position + beyond * np.array([3.0, 1.0, 2.0]))
+    free = np.arange(7) != 2
+    rng = np.random.default_rng(5)
+    starts = [np.where(free, rng.uniform(arm7.lower, arm7.upper), arm7.q) for _ in range(9)]
+    asked = arm7.lower, arm7.upper, free
+    together = dict(nearest_from(arm7.kinematics, target, starts, *asked))
+    assert sorted(together) == list(range(len(starts)))
+    alone = [nearest_in_bounds(arm7.kinematics, target, start, *asked) for start in starts]
+    best = [closest(list(found), arm7.kinematics.description.reach) for found in (together.values(), alone)]
+    assert best[0].distance == pytest.approx(best[1].distance, rel=1e-7, abs=1e-9)
+    assert best[0].angle == pytest.approx(best[1].angle, rel=1e-5, abs=1e-9)
+    for k in range(len(starts)):
+        assert together[k].distance == pytest.approx(alone[k].distance, rel=1e-3, abs=1e-7)
+        assert together[k].q[2] == arm7.q[2]
+        assert np.all((together[k].q >= arm7.lower) & (together[k].q <= arm7.upper))
+    still = dict(nearest_from(arm7.kinematics, target, starts, *asked[:2], np.zeros(7, dtype=bool)))
+    assert all(np.array_equal(still[k].q, start) for k, start in enumerate(starts))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from irlx.robot.kinematics import Kinematics, Sizes
 from irlx.transform.compact import StepProblem
-from irlx.transform.least_squares import least_squares_in_bounds
+from irlx.transform.least_squares import least_squares_from, least_squares_in_bounds
 from irlx.transform.metric import rows_over
 
 Array = NDArray[np.float64]
@@ -62,20 +63,62 @@ def nearest_in_bounds(
 ) -> Nearest:
     """Posture with lower <= q <= upper (n,) that comes nearest to a pose, searched from q.
 
-    Frozen joints stay. Least squares of what is left, displacements divided by the robot's reach. Used where
+    Frozen joints stay. Least squares of what is left, displacements divided by the robot's lever. Used where
     Newton steps find nothing: its residual says how far the robot falls short.
     """
-    scale = kinematics.row_scale
-    movable = free & (upper - lower > _NO_ROOM)
-    full: Array = np.where(free, np.clip(q, lower, upper), q)
+    left = _Left(
+        kinematics, target, np.where(free, np.clip(q, lower, upper), q), _movable(lower, upper, free)
+    )
+    if left.movable.any():
+        low, high = lower[left.movable], upper[left.movable]
+        left.moved(least_squares_in_bounds(left, left.q[left.movable], low, high))
+    return left.nearest
 
-    def residual(x: Array) -> tuple[Array, Array]:
-        full[movable] = x
-        left, derivative = kinematics.difference_derivative(full, target)
-        return scale * left, scale[:, None] * derivative[:, movable]
 
-    if np.any(movable):
-        low, high = lower[movable], upper[movable]
-        full[movable] = least_squares_in_bounds(residual, full[movable], low, high)
-    left = kinematics.difference(full, target)[0]
-    return Nearest(full, left, kinematics.sizes(left))
+def nearest_from(
+    kinematics: Kinematics,
+    target: pin.SE3,
+    starts: Sequence[Array],
+    lower: Array,
+    upper: Array,
+    free: NDArray[np.bool_],
+) -> Iterator[tuple[int, Nearest]]:
+    """What `nearest_in_bounds` gives from each of some starts (n,), with its number, once it is found."""
+    movable = _movable(lower, upper, free)
+    begun = [np.where(free, np.clip(q, lower, upper), q) for q in starts]
+    lefts = [_Left(kinematics, target, q, movable) for q in begun]
+    if not movable.any():
+        yield from ((k, left.nearest) for k, left in enumerate(lefts))
+        return
+    low, high = lower[movable], upper[movable]
+    for k, x in least_squares_from(lefts, [left.q[movable] for left in lefts], low, high):
+        lefts[k].moved(x)
+        yield k, lefts[k].nearest
+
+
+def _movable(lower: Array, upper: Array, free: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    return free & (upper - lower > _NO_ROOM)
+
+
+class _Left:
+    """What is left of a pose, rows scaled to one unit, as a residual of the `movable` joints (n,)."""
+
+    def __init__(self, kinematics: Kinematics, target: pin.SE3, q: Array, movable: NDArray[np.bool_]) -> None:
+        self._kinematics, self._target, self.movable = kinematics, target, movable
+        self.q = q
+
+    def moved(self, x: Array) -> None:
+        """Put the movable joints there."""
+        self.q[self.movable] = x
+
+    def __call__(self, x: Array) -> tuple[Array, Array]:
+        self.moved(x)
+        left, derivative = self._kinematics.difference_derivative(self.q, self._target)
+        scale = self._kinematics.row_scale
+        return scale * left, scale[:, None] * derivative[:, self.movable]
+
+    @property
+    def nearest(self) -> Nearest:
+        """Where the joints are now, and what is left there."""
+        left = self._kinematics.difference(self.q, self._target)[0]
+        return Nearest(self.q, left, self._kinematics.sizes(left))

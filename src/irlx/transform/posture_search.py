@@ -13,7 +13,7 @@ from irlx.promises import FOLLOWED_TURN, PATH_ORIENTATION, PATH_POSITION
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
 from irlx.transform.criteria.posture import Posture
-from irlx.transform.nearest import Nearest, nearest_in_bounds
+from irlx.transform.nearest import Nearest, nearest_from, nearest_in_bounds
 from irlx.transform.qp.solver import QpSolver
 from irlx.transform.step_bounds import BoundSource, StepBounds
 from irlx.transform.tick import TickSolver
@@ -54,16 +54,17 @@ def nearest_approach(
     limits: JointLimits,
     free: NDArray[np.bool_],
 ) -> Iterator[Nearest]:
-    """Postures within the position limits that come nearest to a tool pose, one from each start in turn.
+    """Postures within the position limits that come nearest to a tool pose, one from each start.
 
     Pose in the world: rotation (3, 3), position (3,) m. Starts are q and `RESTARTS` fixed random
-    postures within the limits; frozen joints keep their values.
+    postures within the limits; frozen joints keep their values. That of q comes first, the others as soon
+    as they are found.
     """
     target = kinematics.target(rotation, position)
     lower, upper = limits.position_lower, limits.position_upper
-    starts = _starts(q, limits, free)
-    for start in starts:
-        yield nearest_in_bounds(kinematics, target, start, lower, upper, free)
+    first, *others = _starts(q, limits, free)
+    yield nearest_in_bounds(kinematics, target, first, lower, upper, free)
+    yield from (found for _, found in nearest_from(kinematics, target, others, lower, upper, free))
 
 
 def nearest_posture(
@@ -85,7 +86,11 @@ def nearest_posture(
     solver = TickSolver(kinematics, qp, max_iterations=_ITERATIONS)
     target = kinematics.target(rotation, position)
     criterion = Posture(weights, q)
-    approaches = list(nearest_approach(kinematics, rotation, position, q, limits, free))
+    lower, upper = limits.position_lower, limits.position_upper
+    # One by one: side by side they differ by roundings, which would come into streams.
+    approaches = [
+        nearest_in_bounds(kinematics, target, start, lower, upper, free) for start in _starts(q, limits, free)
+    ]
     best: Array | None = None
     misses: Array | None = None
     least = missed = np.inf
