@@ -86,6 +86,18 @@ def test_the_line_fits_and_can_be_printed(monkeypatch, width: int, encoding: str
     assert line.endswith(("...", "\N{HORIZONTAL ELLIPSIS}", ";"))
 
 
+def test_a_clock_that_jumps_back(clock) -> None:
+    """As in machines that were asleep or are simulated: what is shown goes on, and nothing becomes negative."""
+    progress = Progress(Course(0.01, 2, locate))
+    progress.begins(move(1, 3), 0)
+    progress.plans()
+    for jump in (-50.0, 0.0, -1e9, 2e9):
+        clock[0] += jump
+        progress.ticked(100)
+        assert progress.state[0].startswith("move 1 of 2  1.00 s")
+        assert "-" not in progress.state[0] + progress.state[1]
+
+
 def test_a_run_that_is_interrupted_leaves_the_cursor_visible(monkeypatch) -> None:
     class Terminal(io.StringIO):
         def isatty(self) -> bool:
