@@ -13,6 +13,7 @@ from irlx.cli import main as entry
 from irlx.cli import output
 from irlx.cli.little_memory import expect_little_memory
 from irlx.cli.main import _NO_MEMORY, main
+from irlx.diagnostics.fault import fault
 from irlx.report.figures import Figures
 from irlx.streams import KNOWN_ENDINGS
 from stream_files import content_of
@@ -107,6 +108,13 @@ def test_too_little_memory_for_a_message(folder, monkeypatch, capsys):
     monkeypatch.chdir(folder)
     assert main(["check", "nowhere.irl"]) == 2
     assert capsys.readouterr().err == f"{_NO_MEMORY}\n"
+
+
+def test_bytecode_that_a_full_disk_has_cut():
+    found = fault(EOFError("marshal data too short"))
+    assert found.code == "IRL090"
+    assert "__pycache__" in found.help
+    assert "fault of irlx" in fault(EOFError("another one")).help
 
 
 def test_libraries_for_which_there_is_no_room(monkeypatch):

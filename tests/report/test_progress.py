@@ -87,7 +87,7 @@ def test_the_line_fits_and_can_be_printed(monkeypatch, width: int, encoding: str
 
 
 def test_a_clock_that_jumps_back(clock) -> None:
-    """As in machines that were asleep or are simulated: what is shown goes on, and nothing becomes negative."""
+    """As in machines that were asleep: what is shown goes on, and nothing becomes negative."""
     progress = Progress(Course(0.01, 2, locate))
     progress.begins(move(1, 3), 0)
     progress.plans()

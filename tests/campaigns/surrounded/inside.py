@@ -33,6 +33,8 @@ class Forked:
     def _carry_out(self, arguments: Sequence[str], output: int, file_size: int | None) -> None:
         code = 99
         try:
+            # Python keeps half of a module's bytecode where there is no room for all of it.
+            sys.dont_write_bytecode = True
             os.dup2(output, 1)
             os.dup2(output, 2)
             if file_size is not None:
