@@ -82,6 +82,18 @@ def test_a_pipe_that_does_not_wait_gets_everything():
     assert reader.communicate(timeout=10)[0].strip() == b"300000"
 
 
+def test_a_help_that_is_lost_at_once(monkeypatch, capsys):
+    """As with PYTHONUNBUFFERED, where each text is written when it is said."""
+
+    class Full(io.StringIO):
+        def write(self, _):
+            raise OutputLost(28, "No space left on device")
+
+    monkeypatch.setattr(sys, "stdout", Full())
+    assert entry.main(["--help"]) == 2
+    assert "error IRL003: cannot write stdout: no space left on device" in capsys.readouterr().err
+
+
 def test_a_reader_that_has_read_enough(monkeypatch, capsys):
     """Nothing is wrong then: what follows is dropped."""
 

@@ -58,6 +58,11 @@ class CommandParser(argparse.ArgumentParser):
             if name.startswith("--") and not any(known.startswith(name) for known in self._long()):
                 raise self._unknown(name)
 
+    def _print_message(self, message: str, file: Any = None) -> None:
+        """Write a help; raises OSError where it cannot be, which argparse would keep to itself."""
+        if message:
+            (file or sys.stderr).write(message)
+
     def _get_value(self, action: argparse.Action, arg_string: str) -> Any:
         """The value of an argument; raises IrlxError, IRL006, for one of another kind."""
         try:
