@@ -193,6 +193,19 @@ def test_targets_typed_by_hand_are_met_to_1e_4_rad(tmp_path, lean: float, allowe
         assert refused(tmp_path, move).code == "IRL437"
 
 
+@pytest.mark.parametrize("way", ["0, 0, 0", "0, 0, 10"])
+@pytest.mark.parametrize(("aside", "allowed"), [(150, False), (0, True)])
+def test_an_orientation_is_asked_for_again_though_the_tool_stays(tmp_path, aside, allowed, way) -> None:
+    """The first move asks for a position alone, and the tool leans; the second one is to keep its orientation."""
+    again = f"MOVE_INC LIN POSE(POSITION({way}), ORIENTATION(1, 0, 0, 0));"
+    body = f"  MOVE LIN (700, 0, 900);\n  MOVE LIN (700, {aside}, 900);\n  {again}"
+    if allowed:
+        ran(tmp_path, body)
+    else:
+        found = refused(tmp_path, body)
+        assert (found.code, found.place.line_and_column[0]) == ("IRL437", 6)
+
+
 def test_on_its_side_a_circle_about_the_base_turns_joint_1_alone(tmp_path) -> None:
     body = f"""
       MOVE PTP {aimed(720, -60, 1000, 30, 90)};

@@ -17,7 +17,7 @@ VAR MAIN_JOINT_SPEED_MIN: down := (-9, -9, -9, -9, -9, -9, -9);
 BEGIN
   JOINTSPEEDLIMIT down, up;
   MOVE_INC LIN POSITION(0, 0, -40);  { a comment that is longer than the terminal of the test is wide }
-  MOVE_INC LIN POSITION(0, 0, 40);
+  MOVE_INC LIN POSITION(0, 90, 60);
 ENDPROGRAM;
 """
 SPEAKS = """PROGRAM p;

@@ -116,6 +116,12 @@ def check_points(asked: Sequence[AskedPose], situation: Situation, limits: Joint
         posture = posture if near is None else near
 
 
+def check_standing(asked: Sequence[AskedPose], situation: Situation) -> None:
+    """Raise PacingError, IRL437, for a target of a motion that stays where it is, and does not meet it."""
+    for pose in asked if situation.kinematics.following.size else ():
+        check_followed(situation.q, pose, situation.kinematics)
+
+
 def turns_off(q: Array, pose: AskedPose, kinematics: Kinematics) -> Array:
     """Turns (F,) rad by which posture q is off a pose in the coordinates that follow from the task's own."""
     target = kinematics.target(pose.rotation, pose.position)

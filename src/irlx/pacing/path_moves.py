@@ -18,7 +18,7 @@ from irlx.pacing.conditions import broken_condition, check_implied, check_target
 from irlx.pacing.drawn_to import check_postures, postures_asked, term_of, warn_of_posture_left
 from irlx.pacing.errors import PacingError
 from irlx.pacing.impossible import Surroundings, explain_failure, goal_shortfall, slower_than_allowed
-from irlx.pacing.left_out import AskedPose, asked_poses, check_on_path, check_points
+from irlx.pacing.left_out import AskedPose, asked_poses, check_on_path, check_points, check_standing
 from irlx.pacing.motion import Motion
 from irlx.pacing.nearest_rows import NearestRows, nearest_of
 from irlx.pacing.options import LimitsInForce
@@ -92,14 +92,16 @@ def _motion(
         situation.notes.add(note)
     rest = _rest(moves[plan.legs], plan) if plan.points else None
     drawn = postures_asked(situation, block, plan, in_force, place)
-    if plan.ticks == 0:
-        warn_of_posture_left(situation, drawn, situation.q, block, place)
-        programmed = _programmed(block, plan)
-        return Motion((None,), in_force, rest, programmed=programmed, asked=plan.path.end_rotation)
     start = start_of(situation, block.tolerance)
     way = start, (plan.path.end_rotation, plan.path.end_position)
     found = widened(situation, in_force, drawn, block.tolerance, way)
-    rows = _paced(found, block, plan, place, _asked(legs, plan, start))
+    asked = _asked(legs, plan, start)
+    if plan.ticks == 0:
+        check_standing(asked, found.situation)
+        warn_of_posture_left(situation, drawn, situation.q, block, place)
+        programmed = _programmed(block, plan)
+        return Motion((None,), in_force, rest, programmed=programmed, asked=plan.path.end_rotation)
+    rows = _paced(found, block, plan, place, asked)
     warn_of_posture_left(situation, drawn, rows.q[-1], block, place)
     touched = len(plan.ends)
     handed: list[MotionRows | None] = [rows]
