@@ -196,7 +196,7 @@ def test_targets_typed_by_hand_are_met_to_1e_4_rad(tmp_path, lean: float, allowe
 @pytest.mark.parametrize("way", ["0, 0, 0", "0, 0, 10"])
 @pytest.mark.parametrize(("aside", "allowed"), [(150, False), (0, True)])
 def test_an_orientation_is_asked_for_again_though_the_tool_stays(tmp_path, aside, allowed, way) -> None:
-    """The first move asks for a position alone, and the tool leans; the second one is to keep its orientation."""
+    """A position alone was asked for, and the tool leans; then the orientation is to be kept."""
     again = f"MOVE_INC LIN POSE(POSITION({way}), ORIENTATION(1, 0, 0, 0));"
     body = f"  MOVE LIN (700, 0, 900);\n  MOVE LIN (700, {aside}, 900);\n  {again}"
     if allowed:
