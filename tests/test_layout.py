@@ -33,6 +33,7 @@ DOORS = {"notebook", "viewer", "cli"}
 WIRING = {
     "job",
     "pipeline",
+    "one_thread",
     "running",
     "recorded",
     "reproduction",

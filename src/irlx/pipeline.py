@@ -20,6 +20,7 @@ from irlx.diagnostics.fault import fault
 from irlx.interpreter.channels.channels import Channels, Told
 from irlx.interpreter.interpret import Interpretation
 from irlx.job import Job, header_of, kinematics_of
+from irlx.one_thread import worked_out_on_one_thread
 from irlx.pacing.correction.corrector import CorrectedRow, Corrector, Senses
 from irlx.pacing.correction.nearness import Nearness
 from irlx.pacing.correction.tally import Tally
@@ -85,7 +86,7 @@ class Execution:
     def __iter__(self) -> Iterator[Executed]:
         """Execute the program block by block. Raises IrlxError where it cannot go on (IRL090: by a fault)."""
         with closing(self._carried_out()) as source:
-            yield from self._executed(source)
+            yield from self._executed(worked_out_on_one_thread(source))
 
     def _executed(self, source: Iterator[Executed]) -> Iterator[Executed]:
         while True:
@@ -140,7 +141,7 @@ class Execution:
         rates = ToolRates(
             motion.speed / 1e3, motion.acc / 1e3, radians(motion.speed_ori), radians(motion.acc_ori)
         )
-        return Corrector(self._pacer, rates, senses, tally, nearness).rows(self)
+        return worked_out_on_one_thread(Corrector(self._pacer, rates, senses, tally, nearness).rows(self))
 
     def blocks(self, told: Told | None = None) -> Iterator[Block]:
         """Blocks of the program; nothing moves until it asks for the posture that its moves lead to.
