@@ -178,6 +178,10 @@ def judged(seed):
     if np.count_nonzero(moves) < len(rows) or np.linalg.cond(rows) > SINGULAR:
         # More rows than joints that may move: once they are rounded they no longer fit together.
         return "singular", told
+    off = np.max(np.abs(tick.chain.left(tick.q + found, tick.target)))
+    if off > BRINK * np.linalg.svd(rows, compute_uv=False)[-1]:
+        # What is left of the pose may be more than the bounds leave room for.
+        return "narrow", told
     return "missed", [*told, f"{solution.status.name}, but {found} meets the pose"]
 
 
