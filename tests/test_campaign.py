@@ -13,7 +13,7 @@ import pytest
 import irlx
 from long_run import portions
 
-QUICK, LONG = range(8), range(1000, 1400)
+QUICK, LONG = range(6), range(1000, 1400)
 REFUSALS = {"IRL345", "IRL421", "IRL422", "IRL520", "IRL521", "IRL523"}
 SPEED_DEG = np.array([60.0] * 9 + [600.0] + [40.0])
 

@@ -25,13 +25,22 @@ def clone(tmp_path):
     return tmp_path
 
 
-@pytest.mark.req("QA-10")
-def test_the_console_session_runs_and_prints_what_it_shows(clone, monkeypatch, capsys):
-    monkeypatch.chdir(clone)
-    lines = "".join(fenced("console")).splitlines()
-    commands = [line[2:] for line in lines if line.startswith("$ ")]
-    shown = [line for line in lines if line and not line.startswith("$ ")]
-    assert commands
+LONG = ("irlx run programs/koch/square_slow.irl",)
+"""Commands that take most of the time of all: tests of slowed runs look at what such a one prints."""
+
+
+def sessions() -> list[tuple[list[str], list[str]]]:
+    """Commands, and lines shown, of every console session."""
+    found = []
+    for session in fenced("console"):
+        lines = session.splitlines()
+        commands = [line[2:] for line in lines if line.startswith("$ ")]
+        found.append((commands, [line for line in lines if line and not line.startswith("$ ")]))
+    return found
+
+
+def carry_out(session: tuple[list[str], list[str]], capsys) -> None:
+    commands, shown = session
     printed = ""
     for command in commands:
         words = shlex.split(command)
@@ -44,6 +53,24 @@ def test_the_console_session_runs_and_prints_what_it_shows(clone, monkeypatch, c
         # Figures at rounding level differ between machines.
         rounding = line.startswith(("path error", "closure"))
         assert (line.split()[0] if rounding else line) in printed
+
+
+@pytest.mark.req("QA-10")
+def test_the_console_sessions_run_and_print_what_they_show(clone, monkeypatch, capsys):
+    monkeypatch.chdir(clone)
+    short = [session for session in sessions() if session[0] and not {*session[0]} & {*LONG}]
+    assert len(short) == len(fenced("console")) - len(LONG)
+    for session in short:
+        carry_out(session, capsys)
+
+
+@pytest.mark.slow
+@pytest.mark.req("QA-10")
+def test_the_long_sessions_run_and_print_what_they_show(clone, monkeypatch, capsys):
+    monkeypatch.chdir(clone)
+    for session in sessions():
+        if {*session[0]} & {*LONG}:
+            carry_out(session, capsys)
 
 
 @pytest.mark.req("QA-10")

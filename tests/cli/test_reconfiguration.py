@@ -109,7 +109,7 @@ def arc_of(stream):
 
 @pytest.mark.req("LANG-62")
 @pytest.mark.req("LANG-68")
-@pytest.mark.parametrize("limits", ["", " WITH JOINTSPEEDLIMIT slowest, fastest"])
+@pytest.mark.parametrize("limits", first(1, [" WITH JOINTSPEEDLIMIT slowest, fastest", ""]))
 def test_a_posture_for_the_via_point(circled, inside, limits):
     plain = arc_of(circled(f"WITH RECONFIGURATION folded{limits}"))
     led = arc_of(circled(f"WITH RECONFIGURATION raised, folded{limits}"))

@@ -261,6 +261,7 @@ def test_ball_and_noise_together(tmp_path):
     assert found.stream.corrections.requests > 250
 
 
+@pytest.mark.slow
 def test_a_correction_goes_as_far_as_an_obstacle_lets_it(tmp_path):
     robot = prepare(files(tmp_path)).cell
     turn, place = Kinematics(robot.robot).tool_pose(robot.start)

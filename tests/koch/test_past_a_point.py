@@ -20,7 +20,7 @@ AT_START = 0.972193
 JOINT_9, JOINT_10 = 8, 9
 
 every_tick = pytest.mark.parametrize(
-    "tick", [pytest.param(tick, marks=() if tick in (25, 50) else pytest.mark.slow) for tick in SAME]
+    "tick", [pytest.param(tick, marks=() if tick == 50 else pytest.mark.slow) for tick in SAME]
 )
 
 

@@ -74,7 +74,7 @@ def test_the_programs_are_sound(programs):
 @pytest.mark.parametrize("count", [1, pytest.param(4, marks=pytest.mark.slow)])
 def test_one_mistake_is_named_where_it_is(short_programs, mistake, count):
     """One report, two at most where one word too few moves what follows; the first one says what to do."""
-    for seed, lines in enumerate(short_programs):
+    for seed, lines in enumerate(short_programs if count > 1 else short_programs[:1]):
         chance = random.Random(seed)
         places = mistake.places(lines)
         assert places, mistake.name

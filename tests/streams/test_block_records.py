@@ -22,8 +22,19 @@ WITH_BLOCKS = [ending for ending in KNOWN_ENDINGS if FORMATS[ending].carries_blo
 
 
 @given(blocks, st.integers(0, 2**40))
-@settings(max_examples=300)
+@settings(max_examples=60, deadline=None)
 def test_blocks_survive_their_irdata_record(block: Block, tick: int) -> None:
+    survives_its_record(block, tick)
+
+
+@pytest.mark.slow
+@given(blocks, st.integers(0, 2**40))
+@settings(max_examples=600, deadline=None)
+def test_many_blocks_survive_their_irdata_record(block: Block, tick: int) -> None:
+    survives_its_record(block, tick)
+
+
+def survives_its_record(block: Block, tick: int) -> None:
     text = record_text(7, *block_operands(BlockRecord(tick, block)))
     assert text.count(b"\n") == 1
     back = block_of(parse_record(text))

@@ -566,8 +566,8 @@ def npz_arrays(stream: Made, tool: np.ndarray, fault: str) -> dict[str, np.ndarr
     return {**arrays, "block": stream.block, "joint_names": names, "meta": np.array(meta)}
 
 
-def write(folder: Path, fault: str = "") -> None:
-    """Write robot.urdf, cell.toml, work.irl and work.irdata, .npz, .csv.
+def write(folder: Path, fault: str = "", endings: tuple[str, ...] = (".irdata", ".csv", ".npz")) -> None:
+    """Write robot.urdf, cell.toml, work.irl and work.irdata, .npz, .csv, or those of some endings.
 
     `fault`, one of FAULTS, is put into the streams; tool column and checksum fit it unless it lies in them.
     """
@@ -579,9 +579,12 @@ def write(folder: Path, fault: str = "") -> None:
         tool[len(tool) // 2, 2] += 2e-9
     for name, text in (("robot.urdf", urdf()), ("cell.toml", CELL), ("work.irl", PROGRAM)):
         (folder / name).write_bytes(text.encode())
-    (folder / "work.irdata").write_bytes(irdata(stream, tool, fault))
-    (folder / "work.csv").write_bytes(csv(stream, tool, fault))
-    np.savez(folder / "work.npz", **npz_arrays(stream, tool, fault))
+    if ".irdata" in endings:
+        (folder / "work.irdata").write_bytes(irdata(stream, tool, fault))
+    if ".csv" in endings:
+        (folder / "work.csv").write_bytes(csv(stream, tool, fault))
+    if ".npz" in endings:
+        np.savez(folder / "work.npz", **npz_arrays(stream, tool, fault))
 
 
 if __name__ == "__main__":

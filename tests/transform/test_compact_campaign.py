@@ -29,7 +29,7 @@ from irlx.transform.qp.proxqp import ProxQpSolver
 
 pytestmark = pytest.mark.req("TRF-01")
 
-QUICK, LONG, PORTION = 130, 12_750, 1_275
+QUICK, LONG, PORTION = 80, 12_800, 1_280
 ACCURACY, BRINK = 1e-9, 1e-12
 KINDS = (
     "active",

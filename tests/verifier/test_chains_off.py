@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -213,18 +214,18 @@ DAMAGES = {
         4,
     ),
     "a spline that is a polyline": (
-        lambda kit: with_block(smooth_path(kit).stream(), 2, kind=MoveKind.LIN),
+        lambda kit: with_block(smooth(kit), 2, kind=MoveKind.LIN),
         "path position",
         5,
     ),
-    "5e-6 m off a spline": (lambda kit: off(smooth_path(kit).stream(), 700, 2, 5e-6), "path position", 5),
+    "5e-6 m off a spline": (lambda kit: off(smooth(kit), 700, 2, 5e-6), "path position", 5),
     "3e-6 rad off on a spline": (
-        lambda kit: off(smooth_path(kit).stream(), 700, 5, 3e-6),
+        lambda kit: off(smooth(kit), 700, 5, 3e-6),
         "path orientation",
         5,
     ),
     "another point of a spline": (
-        lambda kit: inner_moved(smooth_path(kit).stream(), 1, (0.0, 0.0, 1e-4), 2),
+        lambda kit: inner_moved(smooth(kit), 1, (0.0, 0.0, 1e-4), 2),
         "path position",
         5,
     ),
@@ -241,8 +242,15 @@ DAMAGES = {
 }
 
 
+@cache
 def corner(kit) -> JointStream:
+    """Damages are made in copies: this stream and the next one are made once."""
     return three_lines(kit).stream()
+
+
+@cache
+def smooth(kit) -> JointStream:
+    return smooth_path(kit).stream()
 
 
 def inner_moved(stream: JointStream, point: int, by, block: int = 1) -> JointStream:

@@ -72,7 +72,7 @@ def judged(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Callable[[str]
     """Names of the failed checks in the table of `irlx verify` for a fault; the exit code must be 1."""
 
     def run(fault: str, stream: str = "work.irdata") -> set[str]:
-        hand_made.write(tmp_path, fault)
+        hand_made.write(tmp_path, fault, (Path(stream).suffix, ".npz"))
         code = main(arguments(tmp_path, stream))
         table = capsys.readouterr().out
         assert code == 1, table

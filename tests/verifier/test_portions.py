@@ -113,9 +113,12 @@ def long_stream(kit, rounds: int):
 def test_memory_does_not_grow_with_the_stream(ending, kit, tmp_path, monkeypatch):
     import tracemalloc
 
-    monkeypatch.setattr(remembered, "MOST", 1 << 20)
+    monkeypatch.setattr(remembered, "MOST", 1 << 18)
+    monkeypatch.setattr(rows, "PORTION", 512)
+    monkeypatch.setattr("irlx.streams.scan._PORTION", 512)
+    monkeypatch.setattr("irlx.streams.npz_reader._PORTION", 512)
     peaks = []
-    for rounds in (2, 3):
+    for rounds in (1, 2):
         path = tmp_path / f"{rounds}{ending}"
         write_stream(long_stream(kit, rounds), path)
         tracemalloc.start()
