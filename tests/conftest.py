@@ -39,8 +39,10 @@ FIRST = [
     "test_dry_run.py",
     "test_tutorial.py",
     "verifier/test_good_streams.py",
+    "verifier/test_sabotage.py",
+    "cli/test_pages_true.py",
 ]
-"""Long files of few tests begin first: one that began last would keep a worker when the other is done."""
+"""Long files begin first: one that began last would keep a worker when the other is done."""
 
 
 def pytest_configure(config: pytest.Config) -> None:

@@ -70,7 +70,7 @@ def test_what_came_too_near_with_the_least_reserve_is_the_reason(monkeypatch) ->
 @pytest.mark.parametrize(
     ("name", "dt"),
     first_rows(
-        3,
+        2,
         [
             ("arm7", 0.00025),
             ("arm7", 0.05),
