@@ -33,8 +33,8 @@ from irlx.verifier.tools import Pose
 from irlx.verifier.way import course_of
 
 _LED_AWAY = (
-    "a limit was met, or a RECONFIGURATION, a frozen joint, a criterion, an obstacle, joint values or"
-    " another tool led away from the posture"
+    "a limit was met, or a RECONFIGURATION, a frozen joint, a criterion, an obstacle, joint values, another"
+    " frame or another tool led away from the posture"
 )
 
 
@@ -54,7 +54,8 @@ class ClosureChecks:
     A return that closes is a good one. One that does not is reported, not judged, where a joint is at a limit
     at its end that kept it from its value, or met a position limit on the way; and after what leads away from
     the posture, which comes back no faster than the joints can: a RECONFIGURATION, which may even have
-    led to another branch of postures, frozen joints, an added criterion, a move to joint values.
+    led to another branch of postures, frozen joints, an added criterion, a move to joint values, or one in
+    another frame, in which another part of the motion is free.
     """
 
     def __init__(self, evidence: Evidence) -> None:
@@ -187,13 +188,16 @@ def _possible_returns(evidence: Evidence) -> dict[int, _Return]:
     start: int | None = None
     option, led_away = 0, False
     added: frozenset[tuple[str, str]] = frozenset()
+    frames: set[LinkFrame | None] = set()
     for record in evidence.outline.records:
         block = record.block
         if isinstance(block, CyclicBlock):
             start, led_away = record.tick if block.active else None, False
-            option = block.id
+            option, frames = block.id, set()
         added = _added_after(added, block)
-        led_away = led_away or bool(added) or _leads_away(block)
+        if isinstance(block, MoveBlock):
+            frames.add(block.frame)
+        led_away = led_away or bool(added) or len(frames) > 1 or _leads_away(block)
         if start is None or _reconfigures(block) or not isinstance(block, MoveBlock):
             continue
         move = moves[block.id]
