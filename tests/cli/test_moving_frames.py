@@ -271,8 +271,8 @@ def test_returns_in_the_frame_are_told(ran):
 
 
 def test_a_return_behind_a_move_in_another_frame_takes_the_time_that_it_needs(ran):
-    """What the move in the frame left free another one does not: back in the world the posture comes after."""
-    there = f"home := R_ROBTARGET_ACT.PSE; CYCLICSTART; MOVE_INC LIN POSITION(8, 0, 0) IN FRAME pipe;"
+    """What a move in the frame left free is not free in the world: there the posture comes after."""
+    there = "home := R_ROBTARGET_ACT.PSE; CYCLICSTART; MOVE_INC LIN POSITION(8, 0, 0) IN FRAME pipe;"
     back = "MOVE LIN home SPEED := 400; MOVE_INC LIN POSITION(0, 0, 90); MOVE LIN home;"
     first, second = ran(f"{there} {back} CYCLICEND;", "VAR POSE: home;").summary.returns
     assert (first.closed, second.closed) == (False, True)
