@@ -32,10 +32,17 @@ def folder(tmp_path_factory):
     return folder
 
 
+LONG = "irlx run programs/combined/combined.irl"
+"""Takes as long as all others: `test_combined.py` runs and verifies it too."""
+
+
 @pytest.mark.req("QA-10")
-def test_commands_print_what_is_shown(folder, monkeypatch, capsys):
+@pytest.mark.parametrize("long", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["short", "long"])
+def test_commands_print_what_is_shown(folder, monkeypatch, capsys, long):
     monkeypatch.chdir(folder)
-    for session in fenced("console"):
+    sessions = [session for session in fenced("console") if (LONG in session) is long]
+    assert len(sessions) == 1 if long else len(sessions) >= 4
+    for session in sessions:
         commands = [line[2:] for line in session.splitlines() if line.startswith("$ ")]
         shown = [line for line in session.splitlines() if line and not line.startswith("$ ")]
         printed = ""
