@@ -216,6 +216,17 @@ def test_a_move_that_cannot_be_done_behind_one_that_passes(arm) -> None:
     )
 
 
+def test_behind_joined_ptps_of_which_the_last_is_short(tmp_path) -> None:
+    """Of the last PTP one row is left, the one in which it ends: there is nothing to be passed."""
+    arm = Bench(tmp_path, "arm7", 50.0)
+    there, further = arm.posture(0.75, 0.75, 0.75), arm.posture(0.75, 0.75, 0.75, 0, 0, 0, 0.0375)
+    run = arm.run(
+        f"  MOVE PTP {there} C_PTP := 100;\n  MOVE PTP {further} C_PTP := 100;\n  MOVE_INC LIN (0, 0, -20);"
+    )
+    assert "the moves are too short for their ticks" in reasons(run)
+    arm.verified(run)
+
+
 def test_s_curves_are_joined(arm) -> None:
     tour = arm.tour("C_CP := 20 PROFILE := 'S_CURVE'", "C_PTP := 50 PROFILE := 'S_CURVE'")
     run = arm.run(tour)

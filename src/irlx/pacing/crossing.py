@@ -214,6 +214,9 @@ class _Corner:
         """Ticks of both moves that the corner may take, by their ways and rows alone."""
         before, after = self._meeting.before, self._meeting.after
         s = before.s[:-1]
+        if not len(s):
+            # Joined to the PTP before it, a short one is left with the row in which it ends.
+            return Lost("the moves are too short for their ticks")
         inside = s >= s[-1] - self._asked[0]
         first = int(np.count_nonzero(inside)) - 1
         reach = float(np.max(self._far[0][inside])) if before.path is None else self._asked[0]
