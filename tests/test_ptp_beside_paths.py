@@ -219,11 +219,13 @@ def test_a_move_that_cannot_be_done_behind_one_that_passes(arm) -> None:
 def test_behind_joined_ptps_of_which_the_last_is_short(tmp_path) -> None:
     """Of the last PTP one row is left, the one in which it ends: there is nothing to be passed."""
     arm = Bench(tmp_path, "arm7", 50.0)
-    there, further = arm.posture(0.75, 0.75, 0.75), arm.posture(0.75, 0.75, 0.75, 0, 0, 0, 0.0375)
-    run = arm.run(
-        f"  MOVE PTP {there} C_PTP := 100;\n  MOVE PTP {further} C_PTP := 100;\n  MOVE_INC LIN (0, 0, -20);"
+    first, there = (
+        f"MAIN_JOINT({values})" for values in ("10, 30, 0, 60, 0, 60, 0", "16, 36, 6, 66, 6, 66, 6")
     )
-    assert "the moves are too short for their ticks" in reasons(run)
+    further = "MAIN_JOINT(16, 36, 6, 66, 6, 66, 6.1)"
+    joined = f"MOVE PTP {first}; MOVE PTP {there} C_PTP := 100; MOVE PTP {further} C_PTP := 100;"
+    run = arm.run(f"{joined} MOVE_INC LIN (0, 0, -20);")
+    assert any("too short for their ticks" in reason for reason in reasons(run))
     arm.verified(run)
 
 
