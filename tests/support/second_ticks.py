@@ -178,9 +178,11 @@ def judged(seed):
     if np.count_nonzero(moves) < len(rows) or np.linalg.cond(rows) > SINGULAR:
         # More rows than joints that may move: once they are rounded they no longer fit together.
         return "singular", told
-    off = np.max(np.abs(tick.chain.left(tick.q + found, tick.target)))
-    if off > BRINK * np.linalg.svd(rows, compute_uv=False)[-1]:
-        # What is left of the pose may be more than the bounds leave room for.
+    # What is left of the pose may be more than the bounds leave room for: it is met to the last digit.
+    for _ in range(3):
+        left = tick.chain.left(tick.q + found, tick.target)
+        found[moves] -= np.linalg.pinv(rows) @ left
+    if np.any(found < low) or np.any(found > high):
         return "narrow", told
     return "missed", [*told, f"{solution.status.name}, but {found} meets the pose"]
 
