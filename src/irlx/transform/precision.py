@@ -6,6 +6,10 @@ POSITION_TOLERANCE = 1e-7
 ORIENTATION_TOLERANCE = 1e-7
 """Pose error before the last Newton step of a tick, rad."""
 
+TOUCHED_POSE = 1e-11
+"""What bounds may lack to a pose for a tick to be solved all the same, displacements by the robot's lever:
+where they meet the path in one point its step is lost by rounding, and the search for it ends at a tenth."""
+
 SETTLED_STEP = 1e-9
 """Length (rad and m) of a Newton step from which on a tick may be settled."""
 

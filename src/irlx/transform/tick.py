@@ -22,8 +22,10 @@ from irlx.transform.precision import (
     MAX_NEWTON_STEP,
     RESTRAINTS,
     SINGULAR_RATIO,
+    TOUCHED_POSE,
 )
 from irlx.transform.qp.solver import QpSolver
+from irlx.transform.second_start import middle_of_bounds
 from irlx.transform.settling import Settling, is_met
 from irlx.transform.tick_problem import TickProblem, build_tick
 from irlx.transform.undisturbed import UndisturbedTick
@@ -117,13 +119,9 @@ class TickSolver:
             return TickSolution(first, problem.q, nothing, self._no_rows(), self._max_iterations)
         # Bounds can close the way that the first linear step sees and leave another one open.
         nearest = self._nearest(problem)
-        if self._met(nearest.twist):
-            second = self._newton(problem, nearest.q - problem.q)
-            if isinstance(second, TickSolution):
-                return second
-            third = self._restrained(problem) if self._restrains else None
-            if third is not None:
-                return third
+        second = self._from_elsewhere(problem, nearest)
+        if second is not None:
+            return second
         if problem.clearance is not None:
             unaware = self.solve(problem._replace(clearance=None))
             if unaware.solved:
@@ -177,6 +175,33 @@ class TickSolver:
                 q = np.where(free, problem.q + whole, problem.q)
                 return TickSolution(TickStatus.SOLVED, q, active, step_problem.twist, iteration)
         return TickStatus.NOT_CONVERGED
+
+    def _from_elsewhere(self, problem: TickProblem, nearest: Nearest) -> TickSolution | None:
+        """A tick that Newton's steps from its start do not find; None where they find it from nowhere.
+
+        `nearest` is the posture within the bounds that a search from the start brings nearest to the pose.
+        """
+        met = self._met(nearest.twist)
+        starts = [nearest.q - problem.q] if met else []
+        for start in [*starts, *middle_of_bounds(problem.bounds)]:
+            found = self._newton(problem, start)
+            if isinstance(found, TickSolution):
+                return found
+        if not met:
+            return None
+        touched = self._touched(problem, nearest)
+        if touched is None and self._restrains:
+            return self._restrained(problem)
+        return touched
+
+    def _touched(self, problem: TickProblem, nearest: Nearest) -> TickSolution | None:
+        """The tick where its bounds miss the pose by a rounding only: then the pose that they let be met."""
+        missed = nearest.twist * self.kinematics.row_scale
+        if missed.dot(missed) > TOUCHED_POSE**2:
+            return None
+        pose = self.kinematics.target(*self.kinematics.tool_pose(nearest.q))
+        found = self._newton(problem._replace(target=pose), nearest.q - problem.q)
+        return found if isinstance(found, TickSolution) else None
 
     def _restrained(self, problem: TickProblem) -> TickSolution | None:
         """A step on the path with the criterion held back, as little as will do; None where there is none.
