@@ -237,6 +237,7 @@ def first_motion(monkeypatch, answers: list[object]) -> tuple[object, list[objec
     monkeypatch.setattr(planned, "timed_curves", timed_curves)
     monkeypatch.setattr(planned, "rows_on_clock", rows_on_clock)
     monkeypatch.setattr(planned, "_standing", lambda *_: None)
+    monkeypatch.setattr(planned, "_with_short_ends", lambda model, timed, *_: timed)
     return plan_motion(robot.model(robot.unlimited()), task), asked, kinks
 
 

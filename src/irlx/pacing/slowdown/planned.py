@@ -25,6 +25,7 @@ from irlx.pacing.slowdown.ladder import TimedCurve, places_between, timed_curves
 from irlx.pacing.slowdown.model import Model
 from irlx.pacing.slowdown.resample import resample
 from irlx.pacing.slowdown.reserve import RESERVE, reserved
+from irlx.pacing.slowdown.short_ends import with_short_ends
 from irlx.transform.clearance import TooNear
 from irlx.transform.criteria.criterion import Criterion
 from irlx.transform.nearest import scaled_singular_values
@@ -186,13 +187,20 @@ def _with_reserve(
             continue
         # The path correction of a rough curve may pass a position limit on which a joint starts.
         try:
-            found = rows_on_clock(model, timed, task.ticking, float(np.sum(grid.times)))
+            found = rows_on_clock(
+                model, _with_short_ends(model, timed, task, grid), task.ticking, float(np.sum(grid.times))
+            )
         except np.linalg.LinAlgError:
             knot = _most_singular(model, timed, grid)
             found = Refusal(float(grid.s[knot]), timed=timed, knot=knot)
         if isinstance(found, PlannedMotion):
             break
     return found
+
+
+def _with_short_ends(model: Model, timed: TimedCurve, task: MotionTask, grid: PathGrid) -> TimedCurve:
+    clock = with_short_ends(timed.clock, timed.curve, model.limits, grid.rates, task.law.rates_at, task.acc)
+    return replace(timed, clock=clock)
 
 
 def _undisturbed(
