@@ -7,6 +7,7 @@ import signal
 import sys
 import threading
 from collections import Counter
+from collections.abc import Generator
 from pathlib import Path
 
 import pytest
@@ -60,10 +61,35 @@ def pytest_configure(config: pytest.Config) -> None:
         compileall.compile_dir(SOURCE, quiet=2)
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """The long files come first; the order within a file stays."""
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report(
+    collector: pytest.Collector,
+) -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
+    """Every other worker reads the folders backwards.
+
+    So two of them rewrite the assertions of half of the files each, and find those of the others written:
+    six seconds in a fresh clone.
+    """
+    report = yield
+    if isinstance(collector, pytest.Directory) and _reads_backwards(collector.config):
+        report.result.reverse()
+    return report
+
+
+def _reads_backwards(config: pytest.Config) -> bool:
+    return hasattr(config, "workerinput") and int(config.workerinput["workerid"].removeprefix("gw")) % 2 == 1
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """The long files come first, the others in one order for all workers; that within a file stays."""
     places = {f"tests/{name}": place for place, name in enumerate(FIRST)}
-    items.sort(key=lambda item: places.get(item.nodeid.partition("::")[0], len(FIRST)))
+    alone = not hasattr(config, "workerinput")
+
+    def place(item: pytest.Item) -> tuple[int, list[str]]:
+        path = item.nodeid.partition("::")[0]
+        return places.get(path, len(FIRST)), [] if alone else path.split("/")
+
+    items.sort(key=place)
 
 
 def pytest_collection_finish() -> None:
