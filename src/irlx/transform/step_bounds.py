@@ -37,7 +37,8 @@ def braking_speed(room: Array, deceleration: Array, dt: float | Array) -> Array:
     m = floor((sqrt(1 + 8 u) - 1) / 2). Shapes (n,), or (N, n) with ticks `dt` (N, 1); room in rad or m, not
     negative; infinite where `deceleration` or `room` is.
     """
-    if np.all(np.isfinite(deceleration) & (deceleration > 0.0)) and np.all(room < np.inf):
+    plain = (deceleration > 0.0) & (deceleration < np.inf)
+    if np.count_nonzero(plain) == plain.size and np.count_nonzero(room < np.inf) == room.size:
         # The formula as it stands: most robots know all accelerations.
         return _stopping(room, deceleration * dt, deceleration * dt**2)
     speed = np.full(room.shape, np.inf)

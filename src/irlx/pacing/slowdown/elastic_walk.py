@@ -202,15 +202,15 @@ class _Stretch:
             if moved is None:
                 return None
             step, stretch = moved
-            if not np.all(np.isfinite(step)):
+            if not np.isfinite(step).all():
                 return None
             change = step - whole
-            largest = float(np.max(np.abs(change), initial=0.0))
+            largest = float(np.abs(change).max(initial=0.0))
             whole = whole + change * min(1.0, _LONGEST / max(largest, 1e-300))
             if largest <= self._settled:
                 # Where joints are held a step may be small without leading anywhere.
                 left, _ = self._model.kinematics.difference(self._problem.q + whole, self._problem.target)
-                if float(np.max(np.abs(left))) > _SETTLED:
+                if float(np.abs(left).max()) > _SETTLED:
                     return None
                 keeping = self._problem.clearance
                 if keeping is None or keeping.kept(whole):
@@ -311,12 +311,12 @@ def _one_unknown(
     """`_many_unknowns` where there is but one."""
     slope = rows[:, 0]
     still = np.abs(slope) <= _NO_SLOPE
-    if np.any(still & ((target > room.high + _ROUNDING) | (target < room.low - _ROUNDING))):
+    if (still & ((target > room.high + _ROUNDING) | (target < room.low - _ROUNDING))).any():
         return None
     safe = np.where(still, 1.0, slope)
-    ends = np.stack([(room.low - target) / safe, (room.high - target) / safe])
-    least = float(np.max(np.where(still, -np.inf, np.min(ends, axis=0))))
-    most = float(np.min(np.where(still, np.inf, np.max(ends, axis=0))))
+    first, second = (room.low - target) / safe, (room.high - target) / safe
+    least = float(np.where(still, -np.inf, np.minimum(first, second)).max())
+    most = float(np.where(still, np.inf, np.maximum(first, second)).min())
     if sides is not None:
         least, most = _within_sides(sides, least, most)
     if least > most:
@@ -355,4 +355,4 @@ def _least_cost(at: Array, rise: Array, price: float, least: float, most: float)
         else:
             meet = (at[left] - at[right]) / (rise[right] - rise[left])
             z = float(min(own[left], max(own[right], min(max(meet, least), most))))
-    return z, float(np.max(at + rise * z))
+    return z, float((at + rise * z).max())

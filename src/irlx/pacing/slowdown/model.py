@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +20,7 @@ Array = NDArray[np.float64]
 
 
 _NO_WAY = 1e-10
+_BRAKE_SHARE = 0.9
 
 
 @dataclass(frozen=True)
@@ -44,6 +46,17 @@ class Model:
         held |= (limits.acceleration_lower == 0.0) | (limits.acceleration_upper == 0.0)
         held |= limits.position_lower == limits.position_upper
         return np.asarray(self.free & ~held)
+
+    @cached_property
+    def speeds_either_way(self) -> Array:
+        """Largest speeds (2 n,) of the joints, upwards and then downwards, rad/s or m/s."""
+        return np.concatenate([self.limits.speed_upper, -self.limits.speed_lower])
+
+    @cached_property
+    def brakes(self) -> Array:
+        """Decelerations (2 n,) that a step may count on when it moves upwards and when downwards."""
+        limits = self.limits
+        return _BRAKE_SHARE * np.concatenate([-limits.acceleration_lower, limits.acceleration_upper])
 
     def targets(self, poses: Poses) -> PoseTargets:
         """Poses as the kinematics keeps them; made once for all uses of a grid."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from functools import cache
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,13 +13,11 @@ from irlx.transform.step_bounds import BoundSource, StepBounds, braking_speed
 
 Array = NDArray[np.float64]
 
-_BRAKE_SHARE = 0.9
 _LEAD_BACK = 12.0
 _TOUCHING = 1e-9
 
 
-@dataclass(frozen=True)
-class Room:
+class Room(NamedTuple):
     """Bounds of one interval: position `low`, `high`; what may be stretched, `down` and `up`, all (n,).
 
     Of many intervals at once, where a way through is known: all (N, n), `duration` (N, 1) s.
@@ -41,27 +39,23 @@ class Room:
         low = np.maximum(np.minimum(bounds[0], q + reserve / _LEAD_BACK), limits.position_lower) - q
         high = np.minimum(np.maximum(bounds[1], q - reserve / _LEAD_BACK), limits.position_upper) - q
         room = np.maximum(np.concatenate([high, -low], axis=-1), 0.0)
-        braking = np.concatenate([-limits.acceleration_lower, limits.acceleration_upper])
-        fastest = np.concatenate([limits.speed_upper, -limits.speed_lower])
-        both = np.minimum(fastest, braking_speed(room, _BRAKE_SHARE * braking, duration))
-        up, down = both[..., : q.shape[-1]], both[..., q.shape[-1] :]
-        return cls(low, high, duration * down, duration * up, duration)
+        both = duration * np.minimum(model.speeds_either_way, braking_speed(room, model.brakes, duration))
+        joints = q.shape[-1]
+        return cls(low, high, both[..., joints:], both[..., :joints], duration)
 
     def none(self) -> StepBounds:
         """No bounds."""
-        wide = np.full(self.low.size, np.inf)
-        source = np.full(self.low.size, BoundSource.POSITION, dtype=np.int8)
-        return StepBounds(-wide, wide, source, source)
+        return _no_bounds(self.low.size)
 
     def holds(self, step: Array) -> bool:
         """Whether a step (n,) needs no stretch."""
         lower, upper = np.maximum(self.low, -self.down), np.minimum(self.high, self.up)
-        return bool(np.all((lower <= step) & (step <= upper)))
+        return bool(((lower <= step) & (step <= upper)).all())
 
     def is_wide_for(self, step: Array) -> bool:
         """Whether a step (n,) needs no stretch, and touches no bound either."""
         lower, upper = np.maximum(self.low, -self.down), np.minimum(self.high, self.up)
-        return bool(np.all((lower + _TOUCHING < step) & (step < upper - _TOUCHING)))
+        return bool(((lower + _TOUCHING < step) & (step < upper - _TOUCHING)).all())
 
     def unstretched(self) -> StepBounds:
         """All bounds as they are."""
@@ -78,3 +72,12 @@ class Room:
         bound = np.where(step > 0.0, self.up, self.down)
         share = np.abs(step) / np.maximum(bound, 1e-300)
         return max(float(np.max(np.where(np.isfinite(bound), share, 0.0))) - 1.0, 0.0)
+
+
+@cache
+def _no_bounds(joints: int) -> StepBounds:
+    wide, source = np.full(joints, np.inf), np.full(joints, BoundSource.POSITION, dtype=np.int8)
+    lower = -wide
+    for array in (wide, lower, source):
+        array.flags.writeable = False
+    return StepBounds(lower, wide, source, source)

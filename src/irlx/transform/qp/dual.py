@@ -32,11 +32,12 @@ class DualSolver:
         """
         lengths = np.sqrt(np.einsum("ij,ij->i", rows, rows))
         # A row of rounding alone, of a joint that only the path moves, must not be taken for a slope.
-        flat = lengths <= _NO_SLOPE * float(np.max(lengths, initial=0.0))
+        flat = lengths <= _NO_SLOPE * float(lengths.max(initial=0.0))
         impossible = flat & ((lower > EMPTY_INTERVAL) | (upper < -EMPTY_INTERVAL))
-        if np.any(lower > upper) or np.any(impossible):
+        if (lower > upper).any() or impossible.any():
             return QpSolution(None, np.zeros(rows.shape[0], dtype=np.int8))
-        iteration = _Iteration(rows, np.where(flat, -np.inf, lower), np.where(flat, np.inf, upper))
+        low, high = np.where(flat, -np.inf, lower), np.where(flat, np.inf, upper)
+        iteration = _Iteration(rows, low, high, lengths)
         if guess is not None:
             iteration.begin(guess)
         return iteration.run()
@@ -45,9 +46,9 @@ class DualSolver:
 class _Iteration:
     """State of one solve: z, the rows held with their sides, and their multipliers (>= 0)."""
 
-    def __init__(self, rows: Array, lower: Array, upper: Array) -> None:
+    def __init__(self, rows: Array, lower: Array, upper: Array, lengths: Array) -> None:
         self._rows, self._lower, self._upper = rows, lower, upper
-        self._lengths = np.sqrt(np.einsum("ij,ij->i", rows, rows))
+        self._lengths = lengths
         self._z = np.zeros(rows.shape[1])
         self._held: list[int] = []
         self._sides: list[float] = []
@@ -67,9 +68,9 @@ class _Iteration:
             except np.linalg.LinAlgError:
                 return
             pushed = multipliers > 0.0
-            if not np.all(np.isfinite(multipliers)) or _lost(gram, held.size):
+            if not np.isfinite(multipliers).all() or _lost(gram, held.size):
                 return
-            if np.all(pushed):
+            if pushed.all():
                 self._held, self._sides = held.tolist(), sides.tolist()
                 self._multipliers, self._z = multipliers, normals.T @ multipliers
                 return
@@ -90,9 +91,9 @@ class _Iteration:
         over, under = reached - self._upper, self._lower - reached
         excess = np.maximum(over, under)
         excess[self._held + self._passed_over] = -np.inf
-        row = int(np.argmax(excess))
+        row = int(excess.argmax())
         # What rounding of the products can leave is no offence.
-        slack = _ROUNDING * max(float(np.max(np.abs(reached))), float(self._lengths[row]) * 1e-3)
+        slack = _ROUNDING * max(float(np.abs(reached).max()), float(self._lengths[row]) * 1e-3)
         if excess[row] <= slack:
             return None
         return row, (1.0 if over[row] > under[row] else -1.0), float(excess[row])
