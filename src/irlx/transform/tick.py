@@ -14,6 +14,7 @@ from irlx.robot.kinematics import Kinematics
 from irlx.transform.compact import Step, StepProblem, bounded_step, free_step
 from irlx.transform.criteria.restrained import Restrained
 from irlx.transform.criterion_pace import CriterionPace
+from irlx.transform.holding_back import HoldingBack
 from irlx.transform.metric import solved
 from irlx.transform.nearest import Nearest, damped_step, nearest_in_bounds, scaled_singular_values
 from irlx.transform.precision import (
@@ -78,15 +79,16 @@ class TickSolver:
         self._qp = qp
         self._plain_for = np.ones(kinematics.joints, dtype=bool)
         self._plain = UndisturbedTick(kinematics, self._plain_for, max_iterations)
-        self._restrains = False
+        self._holding_back: HoldingBack | None = None
 
     def restraining(self) -> TickSolver:
-        """The same, which holds a criterion back where a thorough search finds no step that settles.
+        """The same for one walk, holding a criterion back where a thorough search finds no step that settles.
 
-        Its last resort takes many times as long, and asks less of the criterion than the move does.
+        To find out that it must takes many times as long as a tick does, so it begins the ticks that follow
+        one of them in the same way, see `HoldingBack`. It asks less of the criterion than the move does.
         """
         found = copy(self)
-        found._restrains = True
+        found._holding_back = HoldingBack()
         return found
 
     def solve(self, problem: TickProblem, seed: Array | None = None, thorough: bool = True) -> TickSolution:
@@ -102,6 +104,9 @@ class TickSolver:
         if begun is not problem.criterion:
             problem = problem._replace(criterion=begun)
         start = np.zeros(problem.q.size) if seed is None else seed
+        held_back = self._held_back(problem, start)
+        if held_back is not None:
+            return held_back
         found = self._undisturbed(problem, start)
         if isinstance(found, TickSolution):
             return found
@@ -176,6 +181,19 @@ class TickSolver:
                 return TickSolution(TickStatus.SOLVED, q, active, step_problem.twist, iteration)
         return TickStatus.NOT_CONVERGED
 
+    def _held_back(self, problem: TickProblem, start: Array) -> TickSolution | None:
+        """A step with the criterion held back as a tick before needed it, None where this is not due."""
+        if self._holding_back is None or problem.bounds.conflicts.size:
+            return None
+        restraint = self._holding_back.begin()
+        if restraint is None:
+            return None
+        found = self._newton(_with_restraint(problem, restraint), start)
+        if isinstance(found, TickSolution):
+            return found
+        self._holding_back.failed()
+        return None
+
     def _from_elsewhere(self, problem: TickProblem, nearest: Nearest) -> TickSolution | None:
         """A tick that Newton's steps from its start do not find; None where they find it from nowhere.
 
@@ -190,9 +208,7 @@ class TickSolver:
         if not met:
             return None
         touched = self._touched(problem, nearest)
-        if touched is None and self._restrains:
-            return self._restrained(problem)
-        return touched
+        return self._restrained(problem) if touched is None else touched
 
     def _touched(self, problem: TickProblem, nearest: Nearest) -> TickSolution | None:
         """The tick where its bounds miss the pose by a rounding only: then the pose that they let be met."""
@@ -208,11 +224,13 @@ class TickSolver:
 
         The path must not pay for a criterion on whose minimum the steps do not settle.
         """
+        if self._holding_back is None:
+            return None
         nothing = np.zeros(problem.q.size)
         for restraint in RESTRAINTS:
-            held = problem._replace(criterion=Restrained(problem.criterion, restraint))
-            found = self._newton(held, nothing)
+            found = self._newton(_with_restraint(problem, restraint), nothing)
             if isinstance(found, TickSolution):
+                self._holding_back.needed(restraint)
                 return found
         return None
 
@@ -253,6 +271,10 @@ class TickSolver:
         active = np.where(at_upper, 1, np.where(at_lower, -1, 0)).astype(np.int8)
         active[~problem.free] = 0
         return TickSolution(status, nearest.q, active, nearest.twist, self._max_iterations)
+
+
+def _with_restraint(problem: TickProblem, restraint: float) -> TickProblem:
+    return problem._replace(criterion=Restrained(problem.criterion, restraint))
 
 
 def _length(d: Array) -> float:

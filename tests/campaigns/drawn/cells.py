@@ -79,7 +79,9 @@ class CellDrawing:
             for q in tried:
                 q[rng.random(q.size) < 0.3] = 0.0
             tried += [home]
-        return np.clip(max(tried, key=lambda q: singular(self.kinematics, q)), lower, upper)
+        # In mm and degrees a joint on its limit may lie one bit beyond it.
+        inside = lower * (1 - 1e-12 * np.sign(lower)), upper * (1 - 1e-12 * np.sign(upper))
+        return np.clip(max(tried, key=lambda q: singular(self.kinematics, q)), *inside)
 
     def limits(self, start: np.ndarray) -> list[str]:
         """Limits in degrees and mm; `start` alike, which may lie exactly on one."""

@@ -112,10 +112,15 @@ def _changed(table: dict[str, Any], path: Path, paths: list[Path], chance: Rando
     if change == 2 and isinstance(value, list):
         return replaced(table, path, value * chance.choice((2, 3)) if chance.random() < 0.5 else value[1:])
     if change == 3 and isinstance(value, int | float) and not isinstance(value, bool):
-        return replaced(table, path, value * chance.choice((-1, 1000, 1e-3, 1e150, 1e300, 0, 1e-200)))
+        return replaced(table, path, _scaled(value, chance.choice((-1, 1000, 1e-3, 1e150, 1e300, 0, 1e-200))))
     if change == 4 and isinstance(value, dict):
         return replaced(table, path, {**value, chance.choice(("x", "name", "xyz", "", "é")): 1})
     return replaced(table, path, chance.choice(OTHERS))
+
+
+def _scaled(value: float, factor: float) -> float:
+    # Times 1000 again and again an integer becomes too large for a product with a float.
+    return value * (factor if isinstance(factor, int) or abs(value) < 1e300 else int(factor))
 
 
 def _at(table: Any, path: Path) -> Any:
