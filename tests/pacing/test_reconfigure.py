@@ -9,7 +9,7 @@ from irlx.blocks import JointTarget, LimitKind, MoveBlock, MoveKind, PoseTarget,
 from irlx.diagnostics import CATALOGUE, Place
 from irlx.pacing import reconfigure as reconfigure_module
 from irlx.pacing.errors import PacingError
-from irlx.pacing.reconfigure import _planned
+from irlx.pacing.reconfigure import _curve_through, _planned
 from irlx.pacing.row_check import BrokenBound, broken_bound
 from irlx.pacing.slowdown.model import Model
 from irlx.pacing.slowdown.planned import PlannedMotion, Refusal
@@ -122,6 +122,31 @@ def test_the_present_posture_takes_no_tick(kit, shop):
     assert reconfigure(shop, kit.start) is None
     assert reconfigure(shop, kit.start + 1e-16) is None
     assert shop.pacer.warnings == []
+
+
+@pytest.mark.req("LANG-65")
+@pytest.mark.parametrize("way", [2e-10, 1e-9, 3e-9])
+def test_a_way_of_a_rounding_is_gone(kit, way):
+    """A flow stands still at most points of a way so short; the curve through them ended in an error."""
+    shop = kit.shop(kit.limits(speed=0.8, acceleration=3.0), 0.004)
+    konf = shifted(kit, way)
+    rows = reconfigure(shop, konf)
+    assert rows.q[-1].tobytes() == konf.tobytes()
+    assert 2 <= len(rows) <= 5
+
+
+def test_a_curve_through_points_where_a_flow_stood_still():
+    rng = np.random.default_rng(1)
+    first, last = rng.normal(size=4), rng.normal(size=4)
+    for stood in (1, 3, 7):
+        points = np.vstack([np.tile(first, (stood + 1, 1)), np.linspace(first, last, 9 - stood)[1:]])
+        curve = _curve_through(points)
+        assert len(curve.s) == 9
+        assert np.all(np.diff(curve.s) > 0.0)
+        assert curve.q[0].tobytes() == first.tobytes()
+        assert curve.q[-1].tobytes() == last.tobytes()
+        np.testing.assert_allclose(curve.s[-1], np.linalg.norm(last - first), rtol=1e-14)
+        np.testing.assert_allclose(np.diff(curve.q, 2, axis=0), 0.0, atol=1e-14)
 
 
 def test_joints_without_limits_move_with_the_programmed_speed(kit, shop):

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.spatial.transform import Rotation
+from tests.transform.criteria.test_restrained import Flat
 
 from irlx.transform.holding_back import LONGEST_WAIT, HoldingBack
 from irlx.transform.precision import RESTRAINTS
 from irlx.transform.qp.proxqp import ProxQpSolver
 from irlx.transform.tick import TickSolver
 from irlx.transform.tick_problem import TickProblem
-from tests.transform.criteria.test_restrained import Flat
 
 
 def begins(holding_back: HoldingBack, ticks: int) -> list[float | None]:
@@ -70,8 +70,8 @@ def test_ticks_in_a_row_that_do_not_settle_look_for_their_restraint_once(koch11)
         rng = np.random.default_rng(seed)
         criterion = Flat(rng.normal(size=(6, 11)))
         rotation, position = koch11.kinematics.tool_pose(koch11.q)
-        turn = Rotation.from_rotvec(0.02 * rng.uniform(-1, 1, 3))
-        target = koch11.kinematics.target(rotation @ turn.as_matrix(), position + 0.02 * rng.uniform(-1, 1, 3))
+        turn = Rotation.from_rotvec(0.02 * rng.uniform(-1, 1, 3)).as_matrix()
+        target = koch11.kinematics.target(rotation @ turn, position + 0.02 * rng.uniform(-1, 1, 3))
         problem = TickProblem(target, koch11.q, koch11.bounds(np.inf), criterion, np.ones(11, dtype=bool))
         if solver.solve(problem).solved:
             continue

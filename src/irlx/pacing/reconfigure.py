@@ -134,12 +134,26 @@ def _planned(
 
 def _on_curve(model: Model, points: Array, ticking: Ticking) -> PlannedMotion | Refusal:
     """Rows along the curve through points (K, n) on its fastest clock."""
-    knots = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))))
-    curve = JointCurve(knots, points)
-    clock = plan_clock(clock_bounds(curve, model.limits, np.full(knots.size, inf), inf))
+    curve = _curve_through(points)
+    clock = plan_clock(clock_bounds(curve, model.limits, np.full(curve.s.size, inf), inf))
     if clock is None:
         raise ArithmeticError("a curve has no clock from rest to rest: the clock planner is at fault")
     return rows_on_clock(model, TimedCurve(curve, clock), ticking, 0.0)
+
+
+def _curve_through(points: Array) -> JointCurve:
+    """The curve through points (K, n) by their way.
+
+    On a way of some 1e-9 rad a flow stands still at most of its points: then it is straight and has as many.
+    """
+    way = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))))
+    onward = np.concatenate(([True], np.diff(way) > 0.0))
+    if onward.all():
+        return JointCurve(way, points)
+    share = np.linspace(0.0, 1.0, len(points))
+    straight = points[0] + share[:, None] * (points[-1] - points[0])
+    straight[-1] = points[-1]
+    return JointCurve(share * float(np.linalg.norm(points[-1] - points[0])), straight)
 
 
 def _motion_rows(
