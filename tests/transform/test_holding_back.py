@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.spatial.transform import Rotation
-from tests.transform.criteria.test_restrained import Flat
 
+from flat_criterion import Flat
 from irlx.transform.holding_back import LONGEST_WAIT, HoldingBack
 from irlx.transform.precision import RESTRAINTS
 from irlx.transform.qp.proxqp import ProxQpSolver

@@ -7,31 +7,14 @@ import pytest
 from scipy.optimize import approx_fprime
 from scipy.spatial.transform import Rotation
 
-from irlx.transform.criteria.criterion import Array, Criterion
+from flat_criterion import Flat
+from irlx.transform.criteria.criterion import Criterion
 from irlx.transform.criteria.posture import Posture
 from irlx.transform.criteria.restrained import Restrained
 from irlx.transform.metric import times
 from irlx.transform.qp.proxqp import ProxQpSolver
 from irlx.transform.tick import TickSolver
 from irlx.transform.tick_problem import TickProblem
-
-
-class Flat(Criterion):
-    """1/2 S' H S, which grows in a few directions only."""
-
-    name = "flat"
-
-    def __init__(self, rows: Array, little: float = 1e-6) -> None:
-        self._hessian = rows.T @ rows + little * np.eye(rows.shape[1])
-
-    def value(self, q: Array, step: Array) -> float:
-        return 0.5 * float(step @ self._hessian @ step)
-
-    def gradient(self, q: Array, step: Array) -> Array:
-        return self._hessian @ step
-
-    def hessian(self) -> Array:
-        return self._hessian
 
 
 def base(kind: str, rng: np.random.Generator) -> Criterion:
