@@ -268,6 +268,18 @@ def test_a_stream_gives_the_same_rows(arm) -> None:
     np.testing.assert_array_equal(np.array([sample.qdd for sample in samples]), run.qdd)
 
 
+@pytest.mark.req("CELL-34")
+def test_a_stream_that_breaks_off_in_a_corner_of_two_ptps_is_judged_as_far_as_it_goes(arm) -> None:
+    """Where a PTP passes its target nobody knows whither, the stream ending before the next move."""
+    body = f"MOVE PTP {arm.posture(1, -1, 1)} C_PTP := 80;\nMOVE PTP {arm.posture(-1, 0.5, 1)};"
+    run = arm.run(body)
+    stream, rows = run.stream, run.stream.records[1].tick + 1
+    part = {name: getattr(stream, name)[:rows] for name in ("ticks", "q", "block", "tool")}
+    cut = replace(stream, records=stream.records[:1], complete=False, **part)
+    report = irlx.verify(replace(run, stream=cut), cell=arm.cell)
+    assert [check.name for check in report.failed] == ["complete"], str(report)
+
+
 def test_corrections_of_nothing_change_nothing_of_joined_moves(arm) -> None:
     arm.run(arm.tour("C_CP := 20", "C_PTP := 50"))
     samples = list(irlx.stream(arm.program, arm.cell, correct=lambda _: np.zeros(6)))

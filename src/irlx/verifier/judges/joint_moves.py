@@ -34,9 +34,13 @@ class JointMoveChecks:
                 self._add_goal(move)
 
     def _is_joined(self, move: MoveRows) -> bool:
-        """Whether it runs from or into another move: then it need not be straight all the way."""
+        """Whether it runs from or into another move: then it need not be straight all the way.
+
+        So may one that passes its target where a stream breaks off, nobody knows whither.
+        """
         demand = self._evidence.demands[move.block.id]
-        return demand.passes or demand.follows
+        broken_off = move.block.blend is not None and not move.finished
+        return demand.passes or demand.follows or broken_off
 
     def _add_goal(self, move: MoveRows) -> None:
         demand = self._evidence.demands[move.block.id]
