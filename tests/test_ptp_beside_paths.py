@@ -268,7 +268,7 @@ def test_a_stream_gives_the_same_rows(arm) -> None:
     np.testing.assert_array_equal(np.array([sample.qdd for sample in samples]), run.qdd)
 
 
-@pytest.mark.req("CELL-34")
+@pytest.mark.req("STR-06")
 def test_a_stream_that_breaks_off_in_a_corner_of_two_ptps_is_judged_as_far_as_it_goes(arm) -> None:
     """Where a PTP passes its target nobody knows whither, the stream ending before the next move."""
     body = f"MOVE PTP {arm.posture(1, -1, 1)} C_PTP := 80;\nMOVE PTP {arm.posture(-1, 0.5, 1)};"

@@ -319,6 +319,18 @@ def test_a_turn_about_the_tools_own_axis_is_free(tmp_path) -> None:
     assert np.degrees(np.max(np.abs(free.q[-1] - whole.q[-1])[1:])) > 20.0
 
 
+@pytest.mark.req("STR-06")
+def test_behind_joint_values_and_a_reconfiguration_moves_begin_where_the_tool_stands(tmp_path) -> None:
+    """The reconfiguration turns the spindle, and what follows goes on from there."""
+    body = """
+      MOVE PTP MAIN_JOINT(0, 10, -40, 60, 20, 30, 10);
+      RECONFIGURATION MAIN_JOINT(300, 10, -40, 60, 90, 60, -60);
+      MOVE_INC LIN ((0, 60, 0), ORIZYX(20, 30, 0));"""
+    run = ran(tmp_path, body, 'model = "rail6"\nfree = ["rx"]\n')
+    turned = [Rotation.from_quat(run.tool[record.tick, 3:]) for record in run.stream.records]
+    assert np.degrees((turned[1].inv() * turned[2]).magnitude()) > 5.0
+
+
 def test_a_planar_arm_that_may_turn(tmp_path) -> None:
     run = ran(
         tmp_path,
