@@ -214,6 +214,17 @@ def test_what_closes_the_way_names_the_band(run) -> None:
         run(f"FREEZESTART 4;\n{square('WITH TOLERANCE (0, 0, 0, 3, 3, 0)')}FREEZEEND;\n")
 
 
+@pytest.mark.req("STR-06")
+def test_a_cycle_that_begins_off_the_programmed_pose(run) -> None:
+    """A move without bands to the pose off which the tool stood then is no return to that posture."""
+    there = "home.PSE + POSITION(0, 100, 0)"
+    away = f"home := R_ROBTARGET_ACT;\nMOVE LIN {there} WITH TOLERANCE (0, 0, 0, 5, 5, 0);\n"
+    # Verified by the fixture.
+    found = run(f"{away}CYCLICSTART;\nMOVE PTP {there};\nCYCLICEND;\n")
+    began = found.stream.records[1].tick
+    assert np.abs(found.q[-1] - found.q[began]).max() > 1e-3
+
+
 FREE = {
     "one": 'task = ["x", "y", "z", "rx", "ry"]\nfree = ["rz"]',
     "all": 'task = ["x", "y", "z"]\nfree = ["rx", "ry", "rz"]',

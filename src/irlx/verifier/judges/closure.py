@@ -65,6 +65,7 @@ class ClosureChecks:
         self._starts = {found.start for found in self._returns.values()}
         self._ids = {found.start: found.option for found in self._returns.values()}
         self._poses: dict[tuple[int, LinkFrame | None], list[Pose]] = {}
+        self._stood_off: dict[tuple[int, LinkFrame | None], list[Pose]] = {}
         self._seen_from = {(found.start, found.move.block.frame) for found in self._returns.values()}
         self._moves = {move.block.id: move for move in evidence.moves if move.last > move.start}
         self._at_start: Pose | None = None
@@ -94,7 +95,9 @@ class ClosureChecks:
                 if move.last in self._starts and goal is not None:
                     # Where the tool was told to stand counts as where it stands.
                     told = goal[0], self._attitude(goal[1], move.last)
-                    self._poses.setdefault((move.last, move.block.frame), []).append(told)
+                    # Off it within bands, only a move that has bands as well comes back to the same posture.
+                    kept = self._poses if move.block.tolerance is None else self._stood_off
+                    kept.setdefault((move.last, move.block.frame), []).append(told)
                 if found is not None and goal is not None:
                     self._end(int(stretch.rows[-1]), found, goal)
 
@@ -156,7 +159,9 @@ class ClosureChecks:
 
         A limit excuses the joints that it kept from their values, not others.
         """
-        at_start = self._poses[found.start, found.move.block.frame]
+        seen = found.start, found.move.block.frame
+        banded = found.move.block.tolerance is not None
+        at_start = self._poses[seen] + (self._stood_off.get(seen, []) if banded else [])
         if not any(_same_pose(goal, pose) for pose in at_start):
             return
         evidence = self._evidence
