@@ -67,6 +67,8 @@ class TickSolution(NamedTuple):
 class TickSolver:
     """Solves ticks of one robot; holds no state from one tick to the next but solver workspaces.
 
+    One that is `restraining` also remembers how far the tick before held its criterion back.
+
     `runs_free` tells that a tick without disturbance is that of `undisturbed`.
     """
 
