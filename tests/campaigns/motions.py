@@ -25,6 +25,7 @@ from dataclasses import dataclass, field
 from itertools import count, islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from traceback import format_exc
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
@@ -110,10 +111,15 @@ def outcome_of(seed: int, full: bool = False, kind: str | None = None) -> Outcom
     """Draw, carry out and judge the program of a seed."""
     warnings.simplefilter("ignore")
     begin = time.process_time()
-    case = drawn_case(seed, kind)
-    with TemporaryDirectory() as folder:
-        case.write(Path(folder))
-        verdict = judged(Path(folder), seed, full)
+    try:
+        case = drawn_case(seed, kind)
+        with TemporaryDirectory() as folder:
+            case.write(Path(folder))
+            verdict = judged(Path(folder), seed, full)
+    except Exception:
+        # A fault of the campaign itself is told as a finding: other programs go on.
+        verdict = Verdict(finding=f"campaign: {format_exc()}")
+        return Outcome(seed, kind or "not drawn", verdict, Counter(), time.process_time() - begin)
     spent = time.process_time() - begin
     robot = next(word for word in case.noted if word.startswith("robot "))
     return Outcome(seed, robot, verdict, case.noted, spent, statement_at(case, verdict.line))

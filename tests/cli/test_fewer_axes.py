@@ -320,6 +320,20 @@ def test_a_turn_about_the_tools_own_axis_is_free(tmp_path) -> None:
 
 
 @pytest.mark.req("STR-06")
+def test_behind_a_line_to_joint_values_moves_go_on_from_the_orientation_of_these(tmp_path) -> None:
+    """The free turn is elsewhere then: what follows keeps the turn asked for, not the one that came out."""
+    body = """
+      MOVE PTP MAIN_JOINT(0, 10, -40, 60, 20, 30, 10);
+      MOVE LIN MAIN_JOINT(40, 12, -42, 60, 25, 33, 80)
+        WITH RECONFIGURATION MAIN_JOINT(40, 12, -42, 60, 25, 33, 20);
+      MOVE_INC LIN ((0, 60, 0), ORIZYX(20, 30, 0));"""
+    run = ran(tmp_path, body, 'model = "rail6"\nfree = ["rx"]\n')
+    line, following = run.stream.records[1:]
+    off = run.q[following.tick] - np.array(line.block.target.values)
+    assert np.max(np.abs(off)) > 0.05
+
+
+@pytest.mark.req("STR-06")
 def test_behind_joint_values_and_a_reconfiguration_moves_begin_where_the_tool_stands(tmp_path) -> None:
     """The reconfiguration turns the spindle, and what follows goes on from there."""
     body = """

@@ -97,9 +97,11 @@ class Placer:
 
     def going_on(self, stands: Place, before: Demand, block: int) -> Place:
         """Where a block begins behind a move: where not all turns count with the orientation that was asked
-        for there last, unless joint values were, the tool is another one since, or bands have let it turn."""
-        joints = isinstance(before.move.block.target, JointTarget | JointIncrement)
-        asked = None if joints else before.end.pose
+        for there last, unless a PTP went to joint values, the tool is another one since, or bands have let
+        it turn."""
+        block_before = before.move.block
+        joints = isinstance(block_before.target, JointTarget | JointIncrement)
+        asked = None if joints and block_before.kind is MoveKind.PTP else before.end.pose
         same = self.tools.number(block) == self.tools.number(before.move.block.id)
         if self.turns is None or stands.pose is None or asked is None or not same or self.turned_by(before):
             return stands

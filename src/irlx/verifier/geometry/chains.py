@@ -105,6 +105,11 @@ class ChainWay:
         return self._bases[leg] + self._legs[leg].curve.length
 
     @property
+    def leg(self) -> int:
+        """Number of the leg that the rows have come to."""
+        return self._part.leg
+
+    @property
     def left(self) -> float:
         """Way to the end of the last leg, blends not known yet being counted as corners, m."""
         known = len(self._bases) - 1
@@ -171,7 +176,11 @@ class ChainWay:
         curve, most = self._legs[leg].curve, self._legs[leg].corner.distance
         way = curve.nearest(positions, self._hint(_Part(leg, False)))
         off = np.linalg.norm(positions - curve.points(way), axis=1)
-        inside = (way <= curve.length - most) & (off <= PATH_POSITION)
+        # A row less than a tick before the blend may lie behind it, and within the leg's tolerance as well.
+        nearby = np.where(way <= curve.length - most - self._reach, PATH_POSITION, PATH_STEP)
+        inside = (
+            (way >= self._bounds(leg)[0] - PATH_POSITION) & (way <= curve.length - most) & (off <= nearby)
+        )
         return len(positions) if inside.all() else int(np.argmin(inside))
 
     # ---- Parts
@@ -181,12 +190,22 @@ class ChainWay:
         part = self._part
         at, off, past = self._on(part, positions[done:])
         bad = past | ~(off <= PATH_POSITION)
-        count = len(bad) if not bad.any() else int(np.argmax(bad))
+        unsure = self._may_be_further(part, at) & (off > PATH_STEP) & ~bad
+        stops = bad | unsure
+        count = len(bad) if not stops.any() else int(np.argmax(stops))
         self._place(placed, done, part, at[:count], off[:count], rotations)
         done += count
         if count == len(bad):
             return done
         row = positions[done : done + 1]
+        if unsure[count]:
+            other = self._fitting(row, float(off[count]) - PATH_STEP)
+            if other is not None and self._order(other) > self._order(part):
+                self._part = other
+                return done
+            here = slice(count, count + 1)
+            self._place(placed, done, part, at[here], off[here], rotations)
+            return done + 1
         other = self._fitting(row)
         if other is not None and self._order(other) > self._order(part):
             self._part = other
@@ -316,23 +335,38 @@ class ChainWay:
             return _Part(part.leg, True)
         return _Part(part.leg + 1, False) if part.leg + 1 < len(self._legs) else None
 
-    def _fitting(self, row: Floats) -> _Part | None:
-        """The first part on which a row (1, 3) lies that a tick can reach from here, or the one before."""
+    def _may_be_further(self, part: _Part, at: Floats) -> NDArray[np.bool_]:
+        """Which rows at places `at` (R,) of a part a tick may have brought to the next one."""
+        if self._next(part) is None:
+            return np.zeros(len(at), dtype=np.bool_)
+        if part.blend:
+            return np.ones(len(at), dtype=np.bool_)
+        return np.asarray(at > self._bounds(part.leg)[1] - self._reach)
+
+    def _fitting(self, row: Floats, within: float = PATH_POSITION) -> _Part | None:
+        """The first part `within` m of which a row (1, 3) lies that a tick can reach from here, or the one
+        before."""
         part = self._next(self._part)
         while part is not None and self._start(part) <= self._along + self._reach + PATH_POSITION:
             if not part.blend and self._is_open(part.leg):
                 # Its blend is found out when it is reached.
-                return part if self._surely_before(part.leg, row) else None
+                return part if self._off_curve(part.leg, row) <= within else None
             if not part.blend:
                 self._settle(part.leg, (row, row), False)
             _, off, past = self._on(part, row)
-            if off[0] <= PATH_POSITION and not past[0]:
+            if off[0] <= within and not past[0]:
                 return part
             part = self._next(part)
         before = self._before(self._part)
-        if before is not None and self._on(before, row)[1][0] <= PATH_POSITION:
+        if before is not None and self._on(before, row)[1][0] <= within:
             return before
         return None
+
+    def _off_curve(self, leg: int, row: Floats) -> float:
+        """How far a row (1, 3) is off a leg, its blends left away."""
+        curve = self._legs[leg].curve
+        way = np.clip(curve.nearest(row, self._hint(_Part(leg, False))), 0.0, curve.length)
+        return float(np.linalg.norm(row[0] - curve.points(way)[0]))
 
     def _before(self, part: _Part) -> _Part | None:
         if part.blend:

@@ -102,6 +102,10 @@ def distance_taken(
         distance = min(most, float(np.min(away[:seen])))
     if len(about) and _worst(legs, distance, asked, allowance) > NEAR:
         distance = _best(lambda d: _worst(legs, d, asked, allowance), distance, most)
+        if _worst(legs, distance, asked, allowance) > 1.0:
+            distance = _fitting_first(
+                legs, most, found.part(np.flatnonzero(between > ON_A_LEG)), distance, allowance
+            )
     return distance if distance > PATH_STEP else 0.0
 
 
@@ -136,6 +140,20 @@ def _fitting(
         return distance
     found = [_through(legs, most, position, TANGENTS[k : k + 1]) for k in range(len(TANGENTS))]
     return min([distance, *found], key=lambda d: _worst(legs, d, asked, allowance))
+
+
+def _fitting_first(
+    legs: tuple[Curve, Curve], most: float, rows: _Rows, otherwise: float, allowance: Allowance
+) -> float:
+    """Distance of the blend that as many of the first rows beside both curves fit as can: those behind them
+    may have left the second curve on its next blend already."""
+    for count in range(min(len(rows.way), ASKED), 0, -1):
+        asked = rows.part(np.arange(count))
+        found = [_fitting(legs, most, position, asked, allowance) for position in asked.positions[:2]]
+        best = min(found, key=lambda d: _worst(legs, d, asked, allowance))
+        if _worst(legs, best, asked, allowance) <= NEAR:
+            return best
+    return otherwise
 
 
 def _through(legs: tuple[Curve, Curve], most: float, position: Floats, tangents: Floats) -> float:

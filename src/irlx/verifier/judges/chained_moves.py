@@ -114,7 +114,7 @@ class ChainRows:
             if self._begun is not None:
                 return
         if self._held is not None:
-            poses, rows = self._before_end(self._held, poses, rows, block)
+            poses, rows = self._before_end(self._held, poses, rows, block, final)
         waiting = self._waiting
         waiting.add(poses, rows, block)
         placed = self._way.take(waiting.positions[1:], waiting.rotations[1:], final)
@@ -160,7 +160,9 @@ class ChainRows:
             self._tallies.path[0].add(begun.rows[last - 1 : last], off, PATH_POSITION)
         return (left.positions[1:], left.rotations[1:]), left.rows
 
-    def _before_end(self, held: _Waiting, poses: Pose, rows: Integers, block: int) -> tuple[Pose, Integers]:
+    def _before_end(
+        self, held: _Waiting, poses: Pose, rows: Integers, block: int, final: bool
+    ) -> tuple[Pose, Integers]:
         """The rows that do not belong to the corner to the PTP behind; others are held."""
         if block != self._ids[-1]:
             if len(rows):
@@ -170,6 +172,11 @@ class ChainRows:
         curve, goal = self._legs.legs[-1].curve, self._chain[-1].end.pose
         assert goal is not None
         way = curve.nearest(held.positions[1:], self._hint)
+        if len(self._legs.legs) > 1 and np.isfinite(curve.whole) and len(way):
+            # How much of a circle a blend takes is not known yet: rows are counted from its end.
+            if not final:
+                return (poses[0][:0], poses[1][:0]), rows[:0]
+            way = way + curve.whole * np.round((curve.length - way[-1]) / curve.whole)
         near = np.linalg.norm(held.positions[1:] - goal[0], axis=1) <= self._reaches[1] + PATH_POSITION
         outside = np.flatnonzero(~((way > curve.length - self._reaches[1]) & near))
         count = int(outside[-1]) + 1 if outside.size else 0
@@ -326,4 +333,13 @@ class ChainRows:
                 row, followed_off(attitude, goal[1]), FOLLOWED_TURN, PATH_ORIENTATION
             )
         missing = np.array([self._way.left - float(self._alongs[-1])])
-        self._tallies.progress.add(row, missing, PATH_POSITION, rank=missing / PATH_POSITION, unit="m")
+        allowed = max(PATH_POSITION, self._unseen_way())
+        self._tallies.progress.add(row, missing, allowed, rank=missing / allowed, unit="m")
+
+    def _unseen_way(self) -> float:
+        """How much of the way, m, may be run between two rows: legs that lead back to where the tool is, when
+        a tick is enough for them, leave no trace."""
+        legs, reached = self._legs, self._way.leg
+        if reached == len(legs.legs) - 1:
+            return 0.0
+        return float(np.min(np.minimum(legs.speed * self._dt, legs.acc * self._dt**2)[reached:]))
