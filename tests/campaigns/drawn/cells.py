@@ -80,7 +80,7 @@ class CellDrawing:
                 q[rng.random(q.size) < 0.3] = 0.0
             tried += [home]
         # In mm and degrees a joint on its limit may lie one bit beyond it.
-        inside = lower * (1 - 1e-12 * np.sign(lower)), upper * (1 - 1e-12 * np.sign(upper))
+        inside = lower * (1 + 1e-12 * np.sign(lower)), upper * (1 - 1e-12 * np.sign(upper))
         return np.clip(max(tried, key=lambda q: singular(self.kinematics, q)), *inside)
 
     def limits(self, start: np.ndarray) -> list[str]:
@@ -88,7 +88,7 @@ class CellDrawing:
         rng, n, own = self.rng, len(start), self.plain.limits
         lines = ["[robot.limits]"]
         lower, upper = (side * self.units for side in own.pair("position"))
-        self.bounds = lower * (1 - 1e-12 * np.sign(lower)), upper * (1 - 1e-12 * np.sign(upper))
+        self.bounds = lower * (1 + 1e-12 * np.sign(lower)), upper * (1 - 1e-12 * np.sign(upper))
         if rng.random() < 0.5:
             low = np.maximum(start - rng.uniform(0.6, 2.5, n) * self.units, lower)
             high = np.minimum(start + rng.uniform(0.6, 2.5, n) * self.units, upper)
