@@ -23,6 +23,7 @@ from irlx.cell.load import load_cell
 from irlx.cell.made_constraints import constrained
 from irlx.diagnostics import IrlxError, report
 from irlx.diagnostics.whole_file import whole_file
+from irlx.given_values import check_count, check_kind, check_number
 from irlx.interpreter.channels.pieces import InputGiven
 from irlx.interpreter.channels.setup import ChannelSetup
 from irlx.interpreter.interpret import MAX_STEPS
@@ -86,6 +87,7 @@ def prepare(
     tick.
     Raises ProgramError, CellError, or IrlxError with IRL006 for a number out of range.
     """
+    check_kind("cell=", cell, (Cell, str, os.PathLike), "a path, or a cell that has been loaded")
     if not isinstance(program, Program | Recorded):
         program = recorded(Path(program)) if is_recorded(Path(program)) else _loaded(program, cell)
     loaded = _loaded_cell(program, cell)
@@ -97,17 +99,13 @@ def prepare(
             "on_pause=": on_pause,
         }
         _refuse(without)
-    if max_slow is not None and not max_slow >= 1.0:
-        cause = "a move cannot be faster than programmed: at least 1"
-        raise IrlxError(report("IRL006", option="--max-slow", value=f"{max_slow:g}", cause=cause))
+    cause = "a move cannot be faster than programmed: at least 1"
+    check_number("--max-slow", max_slow, cause, lambda times: times >= 1.0)
+    check_count("--max-steps", max_steps, 1)
+    check_number("--pause", pause_s, "a pause lasts a number of seconds, 0 or more", is_time)
     slowest = inf if max_slow is None else max_slow
     said = inputs_of(loaded, inputs)
     steps = MAX_STEPS if max_steps is None else max_steps
-    if steps < 1:
-        raise IrlxError(report("IRL006", option="--max-steps", value=f"{steps}", cause="at least 1"))
-    if not is_time(pause_s):
-        cause = "a pause lasts a number of seconds, 0 or more"
-        raise IrlxError(report("IRL006", option="--pause", value=f"{pause_s:g}", cause=cause))
     more = _channels(program, loaded, files, input, output), Pauses(pause_s, on_pause)
     untold = _untold(
         inputs=inputs, input=input, files=files, on_pause=on_pause, made_cell=isinstance(cell, Cell)
@@ -129,9 +127,8 @@ def _tick_ns(tick_ms: float | None, program: Program | Recorded, cell: Cell) -> 
     """Duration of a tick, ns. Raises IrlxError, IRL006, for one that is too short or too long."""
     if tick_ms is None:
         return program.header.tick_ns if isinstance(program, Recorded) else cell.tick_ns
-    if not LEAST_TICK_MS <= tick_ms <= LONGEST_TICK_MS:
-        cause = f"a tick lasts {LEAST_TICK_MS:g} to {LONGEST_TICK_MS:g} ms"
-        raise IrlxError(report("IRL006", option="--tick", value=f"{tick_ms:g}", cause=cause))
+    cause = f"a tick lasts {LEAST_TICK_MS:g} to {LONGEST_TICK_MS:g} ms"
+    check_number("--tick", tick_ms, cause, lambda given: LEAST_TICK_MS <= given <= LONGEST_TICK_MS)
     return round(tick_ms * 1e6)
 
 
@@ -165,6 +162,9 @@ def _channels(
     if not (input is None or isinstance(input, str) or hasattr(input, "readline")):
         cause = "a text, or a file that is open to be read"
         raise IrlxError(report("IRL006", option="input=", value=repr(input), cause=cause))
+    if not (output is None or hasattr(output, "write")):
+        cause = "a file that is open to be written"
+        raise IrlxError(report("IRL006", option="output=", value=repr(output), cause=cause))
     own = {found.path: "a data list of the program" for found in program.all_lists}
     own |= {module.path: "a module of the program" for module in program.modules}
     own |= {program.path: "the program itself", Path(cell.file): "the cell of the program"}

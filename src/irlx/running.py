@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from irlx.blocks import Block, Origin
 from irlx.diagnostics import Diagnostic, IrlxError, report
+from irlx.given_values import check_count
 from irlx.interpreter.channels.pieces import InputGiven
 from irlx.job import CellGiven, InputsGiven, Job, PathLike, prepare
 from irlx.language.suppression import without_ignored
@@ -84,6 +85,7 @@ def run(
     once it does, RunInterrupted on Ctrl-C.
     """
     channels = files, input, output
+    check_count("explain_tick=", explain_tick, 0)
     job = prepare(program, cell, tick_ms, max_slow, max_steps, inputs, *channels, pause_s)
     execution = Execution(job)
     finished = execute(execution, progress, explain_tick)
@@ -118,6 +120,7 @@ def record(
     on is a RunError; where it is known only at the end, its `run` is complete, `files` those that appeared.
     """
     channels = files, input, output
+    check_count("explain_tick=", explain_tick, 0)
     job = prepare(program, cell, tick_ms, max_slow, max_steps, inputs, *channels, pause_s)
     paths = [outputs] if isinstance(outputs, str | os.PathLike) else list(outputs)
     streams = [Path(path) for path in paths if not is_page(path)]

@@ -35,7 +35,8 @@ from irlx.cell.load import load_cell
 from irlx.cell.named import robot_names
 from irlx.cell.schema import RobotSection
 from irlx.cell.setting import setting_of
-from irlx.diagnostics import IrlxError
+from irlx.diagnostics import IrlxError, report
+from irlx.given_values import check_count
 from irlx.interpreter.channels.channels import Channels
 from irlx.interpreter.channels.unanswered_files import UnansweredFiles
 from irlx.interpreter.interpret import MAX_STEPS, interpret
@@ -70,14 +71,19 @@ def verify(
     `program` the stream must come from that very text, and its blocks must be those that the text gives;
     `max_steps` is for programs that were run with it. Both may be given as they have been loaded.
     A damaged file fails the check 'file'. Raises StreamError where there is no file to
-    read, CellError for a `cell` that cannot be used, ProgramError for a program that cannot.
+    read, CellError for a `cell` that cannot be used, ProgramError for a program that cannot, IrlxError with
+    IRL006 for what is no run, no path or no number of statements.
     """
+    check_count("--max-steps", max_steps, 1)
     given_cell = cell if cell is None or isinstance(cell, Cell) else load_cell(Path(cell))
     text = program if program is None or isinstance(program, Program) else load(program, cell)
     if isinstance(run_or_file, str | os.PathLike):
         scans: Scans = partial(scan_stream, run_or_file)
         name, beside, from_file = Path(run_or_file).name, Path(run_or_file).parent, True
         may_lack_blocks = not format_of(run_or_file).carries_blocks
+    elif not hasattr(run_or_file, "stream"):
+        cause = "a run, or the path of a stream"
+        raise IrlxError(report("IRL006", option="run_or_file=", value=repr(run_or_file), cause=cause))
     else:
         stream = run_or_file.stream
         scans, name = partial(scan_of, stream), stream.header.program_name

@@ -111,6 +111,52 @@ def test_tick_and_cell_are_arguments(folder, short_run):
         irlx.run(folder / "p.irl", tick_ms=0)
 
 
+@pytest.mark.req("QA-06")
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ({"max_steps": 2.5}, "--max-steps 2.5: a whole number, at least 1"),
+        ({"max_steps": "3"}, "--max-steps '3': a whole number, at least 1"),
+        ({"max_steps": True}, "--max-steps True: a whole number, at least 1"),
+        ({"max_steps": 0}, "--max-steps 0: a whole number, at least 1"),
+        ({"tick_ms": "10"}, "--tick '10': a tick lasts 0.25 to 1000 ms"),
+        ({"tick_ms": 10**400}, "a tick lasts 0.25 to 1000 ms"),
+        ({"tick_ms": float("nan")}, "--tick nan: a tick lasts 0.25 to 1000 ms"),
+        ({"max_slow": "2"}, "--max-slow '2': a move cannot be faster"),
+        ({"pause_s": "1"}, "--pause '1': a pause lasts a number of seconds"),
+        ({"pause_s": float("inf")}, "--pause inf: a pause lasts a number of seconds"),
+        ({"explain_tick": 2.5}, "explain_tick= 2.5: a whole number, at least 0"),
+        ({"explain_tick": -1}, "explain_tick= -1: a whole number, at least 0"),
+        ({"cell": 3}, "cell= 3: a path, or a cell that has been loaded"),
+        ({"output": 3}, "output= 3: a file that is open to be written"),
+    ],
+    ids=str,
+)
+def test_arguments_that_cannot_be_used_are_told_with_what_is_expected(folder, given, told) -> None:
+    with pytest.raises(irlx.IrlxError) as caught:
+        irlx.run(folder / "p.irl", **given)
+    assert [found.code for found in caught.value.diagnostics] == ["IRL006"]
+    assert told in str(caught.value)
+
+
+def test_numbers_of_numpy_are_numbers(folder, short_run) -> None:
+    run = irlx.run(
+        folder / "p.irl", tick_ms=np.float32(25.0), max_steps=np.int64(1000), max_slow=np.float64(3.0)
+    )
+    assert run.t[1] == 0.025
+
+
+@pytest.mark.req("QA-06")
+def test_what_is_no_run_is_not_verified(folder, short_run) -> None:
+    for wrong, told in (
+        ((3,), "run_or_file= 3: a run, or the path"),
+        ((short_run, None, None, 0), "at least 1"),
+    ):
+        with pytest.raises(irlx.IrlxError, match="IRL006") as caught:
+            irlx.verify(*wrong)
+        assert told in str(caught.value)
+
+
 @pytest.mark.req("STR-04")
 @pytest.mark.parametrize("ending", ["npz", "csv", "irdata"])
 def test_save_and_verify(folder, short_run, ending):
