@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -354,6 +355,45 @@ SABOTAGE = {
     "a corner goes astray": (3, slice(1, 4), 0.05, {"PTP straight"}),
     "a corner goes astray on the LIN": (1, slice(-4, -1), 0.05, {"path position", "programmed speed"}),
 }
+
+
+CIRCLES = {
+    "behind a blend": """
+        MOVE LIN {0.0 0.5} C_CP := 100;
+        MOVE CIRCLE {0.025 0.525}, {0.0 0.55} ANGLE := -400 C_CP := 100 SPEED := 120;
+        MOVE PTP <1 -1 1>;""",
+    "between two PTPs": """
+        R_SPEED := 800;
+        R_ACC := 500;
+        MOVE PTP <0.427 0.2762 0.3777 0.0886> C_PASS := TRUE;
+        MOVE CIRCLE {0.0771 0.3662}, {-0.2097 0.6531} ANGLE := -400 C_PASS := TRUE;
+        MOVE PTP <0.8616 0.5543 -0.0842 0.8174>;""",
+    "on both sides of a PTP": """
+        R_SPEED := 800;
+        R_ACC := 4000;
+        MOVE CIRCLE POSITION(430.629752, 286.094250, 324.692357),
+          POSITION(425.924230, 290.799773, 324.692357);
+        MOVE CIRCLE POSITION(473.868860, 282.459034, 324.692357), POSITION(449.927917, 306.399977, 324.692357)
+          ANGLE := -585.0983722306498 C_CP := 100;
+        MOVE PTP MAIN_JOINT(45.790334277, 34.078687193, -13.115699944, 96.116039868, 9, 48, -13)
+          C_PASS := TRUE;
+        MOVE CIRCLE POSITION(455.432867, 279.415788, 324.692357),
+          POSITION(454.677574, 280.171082, 324.692357);""",
+}
+"""Circles of more than a turn: {x y} points and <a b ..> postures of the bench."""
+
+
+@pytest.mark.req("STR-06")
+@pytest.mark.parametrize("name", CIRCLES)
+def test_corners_of_circles_of_more_than_a_turn(tmp_path, name) -> None:
+    """Rows in a corner do not tell by their angles how far round they have come; a PTP that is all corners
+    but for three rows is left and reached no farther off than it leads."""
+    arm = Bench(tmp_path, "arm7", 20.0 if "between" in name else 1.0)
+    body = CIRCLES[name]
+    for signs, made in (("{}", arm.point), ("<>", arm.posture)):
+        pattern = re.escape(signs[0]) + "(.*?)" + re.escape(signs[1])
+        body = re.sub(pattern, lambda found, made=made: made(*map(float, found[1].split())), body)
+    arm.verified(arm.run(body))
 
 
 @pytest.mark.parametrize("name", SABOTAGE)

@@ -10,15 +10,18 @@ from numpy.typing import NDArray
 
 from irlx.motion.curved_path import CurvedPath
 from irlx.motion.hermite import Jet, quintic
+from irlx.motion.narrow_bends import cuts_about_narrow_bends
 from irlx.motion.polynomial_curve import PolynomialCurve
 from irlx.motion.pose_path import PosePath
 from irlx.motion.rotation_vector import cross
+from irlx.motion.sections import Shape
 from irlx.motion.turn_curve import TurnCurve, TurnJet
 
 Array = NDArray[np.float64]
 
 SECTIONS = 8
-"""Sections of a blend before its corner, and as many behind it, each with a speed of its own."""
+"""Sections of a blend before its corner, and as many behind it, each with a speed of its own; narrow bends
+have more."""
 
 _SAMPLES = np.linspace(0.0, 1.0, 33)
 _TANGENTS = np.linspace(0.75, 1.45, 15)
@@ -34,13 +37,20 @@ _BENDS = (_POWERS[:-2] * (_POWERS[:-2] - 1)) * _SAMPLES[:, None] ** np.arange(3,
 class BlendedCorner:
     """A blend, with the parameter `corner` of its point nearest to the corner, and how far that misses it.
 
-    `miss` in m, `miss_angle` in rad; sections of `path` before the corner come first, `SECTIONS` of them.
+    `miss` in m, `miss_angle` in rad; `sections_before` of the sections of `path` come before the corner.
     """
 
     path: CurvedPath
     corner: float
     miss: float
     miss_angle: float
+    sections_before: int
+
+    @property
+    def halves(self) -> tuple[Shape, Shape]:
+        """What the sections before the corner and those behind it ask for."""
+        shape, before = self.path.shape, self.sections_before
+        return shape.part(slice(before)), shape.part(slice(before, None))
 
 
 def blended_corner(before: PosePath, after: PosePath, distance: float) -> BlendedCorner:
@@ -61,12 +71,14 @@ def blended_corner(before: PosePath, after: PosePath, distance: float) -> Blende
     nearest = _nearest(curve, before.end_position)
     steps = np.linspace(0.0, 1.0, SECTIONS + 1)
     cuts = np.concatenate([nearest * steps, nearest + (1.0 - nearest) * steps[1:]])
+    cuts = cuts_about_narrow_bends(curve, cuts)
     path = CurvedPath(curve, turns, cuts, end.value, end_turn.rotation)
     corner = float(curve.length_at(np.array([nearest]))[0])
     point = curve.points(np.array([nearest]))[0]
     rotation = turns.rotations(np.array([corner]))[0]
     miss = float(np.linalg.norm(point - before.end_position))
-    return BlendedCorner(path, corner, miss, _angle_between(corner_rotation, rotation))
+    before_corner = int(np.searchsorted(cuts, nearest))
+    return BlendedCorner(path, corner, miss, _angle_between(corner_rotation, rotation), before_corner)
 
 
 def _jets(path: PosePath, s: Array) -> tuple[Jet, TurnJet]:

@@ -7,7 +7,7 @@ from math import pi, sqrt
 
 import numpy as np
 
-from irlx.motion.blended_corner import SECTIONS, BlendedCorner, blended_corner
+from irlx.motion.blended_corner import BlendedCorner, blended_corner
 from irlx.motion.edges import Edge
 from irlx.motion.line import Line
 
@@ -117,10 +117,8 @@ def _speed(edge: Edge) -> float:
 
 def _strain(blend: BlendedCorner, edges: tuple[Edge, Edge], speeds: tuple[float, float]) -> float:
     """How many times the accelerations allowed a blend needs at the speeds of its two sides."""
-    shape = blend.path.shape
     worst = 0.0
-    for edge, speed, half in zip(edges, speeds, (slice(SECTIONS), slice(SECTIONS, None)), strict=True):
-        part = shape.part(half)
+    for edge, speed, part in zip(edges, speeds, blend.halves, strict=True):
         worst = max(worst, speed**2 * float(np.max(part.curvature)) / edge.law.acc)
         worst = max(worst, 2.0 * speed**2 * float(np.max(part.turn_bend)) / edge.law.acc_ori)
     return worst

@@ -8,15 +8,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from irlx.motion.largest_values import SAMPLES, largest_values, samples_of, seen_in
 from irlx.motion.polynomial_curve import PolynomialCurve
 from irlx.motion.pose_path import Poses
 from irlx.motion.sections import Shape
 from irlx.motion.turn_curve import TurnCurve
 
 Array = NDArray[np.float64]
-
-_SAMPLES = 5
-_SHARES = np.linspace(0.0, 1.0, _SAMPLES)
 
 
 @dataclass(frozen=True)
@@ -50,14 +48,17 @@ class CurvedPath:
     @cached_property
     def shape(self) -> Shape:
         """Largest curvature, turn rate and turn bend between the cuts."""
-        sections = len(self.cuts) - 1
-        u = (self.cuts[:-1, None] + np.diff(self.cuts)[:, None] * _SHARES).ravel()
-        s = self.curve.length_at(u)
-        ends = np.append(s[::_SAMPLES], self.length)
-        rate, bend = self.turns.rates(s)
-        across = self.curve.along(u)[1]
-        curvature, turn_rate, turn_bend = (_largest(values, sections) for values in (across, rate, bend))
-        varying = np.ones(sections, dtype=np.bool_)
+        low, high = self.cuts[:-1], self.cuts[1:]
+        samples = samples_of(low, high)
+        s = self.curve.length_at(samples.ravel())
+        ends = np.append(s[::SAMPLES], self.length)
+        curvature = largest_values(self.curve.curvature, low, high)
+        # Turns run evenly by the way: they have no narrow peaks.
+        turn_rate, turn_bend = (
+            seen_in(np.linalg.norm(values, axis=1).reshape(samples.shape)).most
+            for values in self.turns.rates(s)
+        )
+        varying = np.ones(len(low), dtype=np.bool_)
         return Shape(np.diff(ends), curvature, turn_rate, turn_bend, varying)
 
     @property
@@ -90,11 +91,3 @@ class CurvedPath:
     def second_derivatives(self, s: Array) -> tuple[Array, Array]:
         """Derivatives by s of the two parts of `derivatives`, each (N, 3)."""
         return self.curve.along(self.curve.parameters_at(s))[1], self.turns.rates(s)[1]
-
-
-def _largest(vectors: Array, sections: int) -> Array:
-    """Largest length in each section of evenly sampled vectors, with what may lie between the samples."""
-    lengths = np.linalg.norm(vectors, axis=-1).reshape(sections, _SAMPLES)
-    # A parabola through three samples rises by at most 1/8 of their second difference between two of them.
-    between = np.max(np.abs(np.diff(lengths, 2, axis=1)), axis=1) / 8.0
-    return np.asarray(np.max(lengths, axis=1) + between)

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from irlx.blocks import PathCourse
 from irlx.diagnostics import Diagnostic, Place, Related, report
-from irlx.motion.blended_corner import SECTIONS
 from irlx.motion.chain_law import Stage, chain_law
 from irlx.motion.chain_path import ChainPath, Piece
 from irlx.motion.corner import Corner, Lost, corner_between
@@ -278,11 +277,11 @@ def _stages(chained: _Chained, run: _Run) -> list[Stage]:
         if len(shapes) <= edge.leg:
             shapes.append([])
         if k:
-            shapes[-1].append(run.corners[k - 1].blend.path.shape.part(slice(SECTIONS, None)))
+            shapes[-1].append(run.corners[k - 1].blend.halves[1])
         if part is not None:
             shapes[-1].append(part.shape)
         if k < len(run.corners):
-            shapes[-1].append(run.corners[k].blend.path.shape.part(slice(SECTIONS)))
+            shapes[-1].append(run.corners[k].blend.halves[0])
     found = []
     for leg, parts in enumerate(shapes):
         edge = next(edge for edge in run.edges if edge.leg == leg)

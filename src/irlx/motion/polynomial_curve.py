@@ -81,6 +81,10 @@ class PolynomialCurve:
         across = bend - np.sum(bend * tangent, axis=-1, keepdims=True) * tangent
         return np.asarray(tangent), np.asarray(across / speed**2)
 
+    def curvature(self, u: Array) -> Array:
+        """Curvature (N,), 1/m, at the parameters u (N,)."""
+        return np.asarray(np.linalg.norm(self.along(u)[1], axis=1))
+
     @cached_property
     def _table(self) -> tuple[Array, Array]:
         """Knots of u and the arc length at each, close enough for Gauss's rule to be exact to rounding."""

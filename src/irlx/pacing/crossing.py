@@ -218,6 +218,8 @@ class _Corner:
             # Joined to the PTP before it, a short one is left with the row in which it ends.
             return Lost("the moves are too short for their ticks")
         inside = s >= s[-1] - self._asked[0]
+        # Rows of the corner before lie on neither move, wherever their s stands.
+        inside[: before.corner_rows[0]] = False
         first = int(np.count_nonzero(inside)) - 1
         reach = float(np.max(self._far[0][inside])) if before.path is None else self._asked[0]
         if reach < LEAST_BLEND:

@@ -16,6 +16,7 @@ from irlx.verifier.findings.tally import Tally
 from irlx.verifier.geometry.chains import ChainWay, Placed
 from irlx.verifier.geometry.rotations import angle_between
 from irlx.verifier.geometry.task_turns import followed_off, turned_off
+from irlx.verifier.judges.chain_end import ways_on_last_circle
 from irlx.verifier.judges.chain_start import start_of_chain
 from irlx.verifier.tools import Pose
 
@@ -171,12 +172,13 @@ class ChainRows:
         held.add(poses, rows, block)
         curve, goal = self._legs.legs[-1].curve, self._chain[-1].end.pose
         assert goal is not None
-        way = curve.nearest(held.positions[1:], self._hint)
-        if len(self._legs.legs) > 1 and np.isfinite(curve.whole) and len(way):
-            # How much of a circle a blend takes is not known yet: rows are counted from its end.
+        if np.isfinite(curve.whole):
             if not final:
                 return (poses[0][:0], poses[1][:0]), rows[:0]
-            way = way + curve.whole * np.round((curve.length - way[-1]) / curve.whole)
+            known = self._hint if len(self._legs.legs) == 1 else None
+            way = ways_on_last_circle(curve, held.positions[1:], known, self._reaches[1])
+        else:
+            way = curve.nearest(held.positions[1:], self._hint)
         near = np.linalg.norm(held.positions[1:] - goal[0], axis=1) <= self._reaches[1] + PATH_POSITION
         outside = np.flatnonzero(~((way > curve.length - self._reaches[1]) & near))
         count = int(outside[-1]) + 1 if outside.size else 0
