@@ -6,9 +6,13 @@ One program again, with everything said of it: `python tests/campaigns/motions.p
 from __future__ import annotations
 
 import shutil
+from itertools import islice
 from pathlib import Path
 
+import motions
+import numpy as np
 import pytest
+from drawn.cells import inside
 from drawn.coverage import WANTED, noted, rules
 from drawn.judging import REFUSALS, judged
 from drawn.minimise import kind_of, smaller
@@ -49,6 +53,23 @@ def test_a_drawn_program_is_carried_out_or_refused_at_its_place(tmp_path: Path, 
     drawn_case(seed).write(tmp_path)
     verdict = judged(tmp_path, seed, full=False)
     assert not verdict.finding, verdict.finding
+
+
+def test_drawn_postures_keep_inside_of_limits_on_either_side() -> None:
+    lower, upper = np.array([-2.0, 1.0, -3.0, 0.0, -np.inf]), np.array([2.0, 2.0, -1.0, 0.0, np.inf])
+    low, high = inside(lower, upper)
+    assert np.all((lower < low) & (high < upper) == [True, True, True, False, False])
+    assert np.array_equal([low[3:], high[3:]], [lower[3:], upper[3:]])
+
+
+def test_a_fault_of_the_campaign_is_a_finding_that_names_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The programs behind it go on."""
+    monkeypatch.setattr(motions, "drawn_case", lambda *_: {}["no such kind"])
+    tally = motions.Tally()
+    for outcome in islice(motions.outcomes(7, 1), 2):
+        tally.add(outcome)
+    assert "seed 8 (not drawn): campaign: KeyError('no such kind')" in tally.figures()
+    assert "Traceback" in tally.findings[0].verdict.finding
 
 
 @pytest.mark.parametrize("folder", [_case(folder) for folder in CORPUS])

@@ -116,9 +116,9 @@ def outcome_of(seed: int, full: bool = False, kind: str | None = None) -> Outcom
         with TemporaryDirectory() as folder:
             case.write(Path(folder))
             verdict = judged(Path(folder), seed, full)
-    except Exception:
+    except Exception as error:
         # A fault of the campaign itself is told as a finding: other programs go on.
-        verdict = Verdict(finding=f"campaign: {format_exc()}")
+        verdict = Verdict(finding=f"campaign: {error!r}\n{format_exc()}")
         return Outcome(seed, kind or "not drawn", verdict, Counter(), time.process_time() - begin)
     spent = time.process_time() - begin
     robot = next(word for word in case.noted if word.startswith("robot "))

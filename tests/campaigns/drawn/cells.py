@@ -79,16 +79,14 @@ class CellDrawing:
             for q in tried:
                 q[rng.random(q.size) < 0.3] = 0.0
             tried += [home]
-        # In mm and degrees a joint on its limit may lie one bit beyond it.
-        inside = lower * (1 + 1e-12 * np.sign(lower)), upper * (1 - 1e-12 * np.sign(upper))
-        return np.clip(max(tried, key=lambda q: singular(self.kinematics, q)), *inside)
+        return np.clip(max(tried, key=lambda q: singular(self.kinematics, q)), *inside(lower, upper))
 
     def limits(self, start: np.ndarray) -> list[str]:
         """Limits in degrees and mm; `start` alike, which may lie exactly on one."""
         rng, n, own = self.rng, len(start), self.plain.limits
         lines = ["[robot.limits]"]
         lower, upper = (side * self.units for side in own.pair("position"))
-        self.bounds = lower * (1 + 1e-12 * np.sign(lower)), upper * (1 - 1e-12 * np.sign(upper))
+        self.bounds = inside(lower, upper)
         if rng.random() < 0.5:
             low = np.maximum(start - rng.uniform(0.6, 2.5, n) * self.units, lower)
             high = np.minimum(start + rng.uniform(0.6, 2.5, n) * self.units, upper)
@@ -247,3 +245,8 @@ class CellDrawing:
             kept.append(f'[[obstacle]]\nname = "them"\nshape = "group"\nmembers = [{members}]')
             self.obstacles.append("them")
         return kept
+
+
+def inside(lower: np.ndarray, upper: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Limits (n,) a hair further inside: in mm and degrees a joint on its limit may lie one bit beyond it."""
+    return lower * (1.0 + 1e-12 * np.sign(lower)), upper * (1.0 - 1e-12 * np.sign(upper))
