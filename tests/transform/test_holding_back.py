@@ -31,6 +31,13 @@ def test_ticks_behind_one_that_needed_it_begin_so_and_more_of_them_each_time() -
     assert waits == [1, 2, 4, 8, 16, 32, 64, LONGEST_WAIT, LONGEST_WAIT]
 
 
+def test_behind_the_first_tick_of_a_walk_one_tick_begins_so() -> None:
+    holding_back = HoldingBack()
+    assert holding_back.begin() is None
+    holding_back.needed(0.01)
+    assert begins(holding_back, 2) == [0.01, None]
+
+
 def test_a_tick_that_settles_without_makes_the_wait_short_again() -> None:
     holding_back = HoldingBack()
     for _ in range(3):

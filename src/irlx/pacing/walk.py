@@ -65,7 +65,8 @@ def walk(
     `limiter` holds the limits in force, `criterion_of` gives the criterion of a row, `free` (n,) is True
     for the joints that are not frozen, `thorough` is that of `TickSolver.solve`, `clearance` what is kept
     clear of, `ticked` is told the tick of the demand that is worked on. Where nothing stands against them,
-    ticks are solved many at a time, see `irlx.transform.free_run`: their rows are the same.
+    ticks are solved many at a time, see `irlx.transform.free_run`: their rows are the same, but that no
+    criterion is held back there.
     """
     walker = _Walker(solver, limiter, criterion_of, free, start, Demands.of(demands), thorough, clearance)
     halt, haste = None, _Haste(solver.runs_free and not (clearance is not None and clearance.moves))

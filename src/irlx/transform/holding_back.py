@@ -16,7 +16,8 @@ class HoldingBack:
 
     def __init__(self) -> None:
         self._restraint = 0.0
-        self._wait, self._left, self._without = 1, 0, 0
+        # The first need of a walk is not one that came again.
+        self._wait, self._left, self._without = 1, 0, 1
 
     def begin(self) -> float | None:
         """The restraint that the next tick begins with, None where it begins without."""
