@@ -20,7 +20,14 @@ from made_chains import (
     tiny_steps,
     with_an_arc,
 )
-from small_circles import onto_the_second_half, round_in_two_ticks
+from small_circles import (
+    nothing_left,
+    onto_the_second_half,
+    round_before_a_line,
+    round_before_a_ptp,
+    round_in_two_ticks,
+    there_and_back,
+)
 
 pytestmark = [pytest.mark.req("MOT-06"), pytest.mark.req("STR-06"), pytest.mark.req("MOT-20")]
 
@@ -41,6 +48,8 @@ GOOD = {
         slow_then_fast,
         round_in_two_ticks,
         onto_the_second_half,
+        nothing_left,
+        round_before_a_line,
     )
 } | {
     "polyline passed anyhow": lambda kit: polyline(kit, Blend(), (0.03, 0.02, 0.01)),
@@ -55,3 +64,11 @@ def test_good_chains_pass(name: str, gantry_kit, robot) -> None:
     for check in ("goal position", "path position", "path orientation", "path progress"):
         assert report[check].status == "ok", str(report)
         assert report[check].worst.value < 2e-8, str(report[check])
+
+
+@pytest.mark.parametrize("made", [round_before_a_ptp, there_and_back], ids=lambda made: made.__name__)
+def test_ways_that_a_tick_is_enough_for_may_be_run_unseen(made, gantry_kit, robot) -> None:
+    """In a corner to a PTP, and where legs lead back to where the tool was."""
+    report = verify_stream(made(gantry_kit).stream(), robot)
+    assert report.passed, str(report)
+    assert report["path progress"].worst.value > 1e-6

@@ -30,7 +30,13 @@ from made_chains import (
     with_an_arc,
 )
 from passing_moves import trapezoid, way_of
-from small_circles import round_in_two_ticks
+from small_circles import (
+    ROUND,
+    round_before_a_line,
+    round_before_a_ptp,
+    round_in_two_ticks,
+    stands_where_it_begins,
+)
 
 pytestmark = [pytest.mark.req("MOT-06"), pytest.mark.req("STR-06")]
 
@@ -115,6 +121,17 @@ DAMAGES = {
     "once more round than the rows": (
         lambda kit: round_in_two_ticks(kit, 6.0 * np.pi).stream(),
         "path progress",
+        5,
+    ),
+    "a circle that is not run": (lambda kit: stands_where_it_begins(kit).stream(), "path progress", 5),
+    "once more round before a PTP": (
+        lambda kit: round_before_a_ptp(kit, 3.0 * ROUND).stream(),
+        "path progress",
+        5,
+    ),
+    "once more round before a line": (
+        lambda kit: round_before_a_line(kit, 3.0 * ROUND).stream(),
+        "programmed speed",
         5,
     ),
     "5e-6 m off a blend": (

@@ -8,14 +8,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.promises import PATH_POSITION, PATH_STEP
-from irlx.streams.joint_stream import Floats, Integers
+from irlx.streams.joint_stream import Floats
 from irlx.verifier.geometry.allowance import EXACT, Allowance
 from irlx.verifier.geometry.blends import Blend
 from irlx.verifier.geometry.corners import Corner, distance_taken
 from irlx.verifier.geometry.curves import Curve, Pose, rounds
+from irlx.verifier.geometry.placed import Placed
 
 FIRST_LOOK = 64
 """Rows looked at together on a part at first, then twice as many, and so on."""
+
+PLACES = 5
+"""Places between two rows, those of the rows included, at which the curvature is looked at."""
 
 
 @dataclass(frozen=True)
@@ -24,48 +28,6 @@ class Leg:
 
     curve: Curve
     corner: Corner
-
-
-@dataclass(frozen=True, eq=False)
-class Placed:
-    """Where rows (R,) lie on a chain.
-
-    `position` m and `orientation` rad off it; `along` the way from its start, m; `leg` the number of the leg,
-    whose end is the point of a blend nearest to the corner; `straight`: on a leg itself, not on a blend;
-    `bend`: least curvature on the way from the row before, 1/m; `sharp`: a corner without a blend was passed
-    on the way from the row before. `wanted` (R, 3, 3): the chain's own orientation there, told where not all
-    turns count.
-    """
-
-    position: Floats
-    orientation: Floats
-    along: Floats
-    leg: Integers
-    straight: NDArray[np.bool_]
-    bend: Floats
-    sharp: NDArray[np.bool_]
-    wanted: Floats | None = None
-
-    @classmethod
-    def empty(cls, rows: int, all_turns: bool = True) -> Placed:
-        """Room for R rows; without `all_turns` with room for orientations."""
-        position, orientation, along, bend = np.zeros((4, rows))
-        yes, no = np.ones(rows, dtype=np.bool_), np.zeros(rows, dtype=np.bool_)
-        wanted = None if all_turns else np.zeros((rows, 3, 3))
-        return cls(position, orientation, along, np.zeros(rows, dtype=np.int64), yes, bend, no, wanted)
-
-    def first(self, rows: int) -> Placed:
-        """The first of the rows."""
-        return Placed(
-            self.position[:rows],
-            self.orientation[:rows],
-            self.along[:rows],
-            self.leg[:rows],
-            self.straight[:rows],
-            self.bend[:rows],
-            self.sharp[:rows],
-            None if self.wanted is None else self.wanted[:rows],
-        )
 
 
 @dataclass(frozen=True)
@@ -114,6 +76,13 @@ class ChainWay:
         """Way to the end of the last leg, blends not known yet being counted as corners, m."""
         known = len(self._bases) - 1
         return self._bases[known] + sum(leg.curve.length for leg in self._legs[known:])
+
+    def bent_to_end(self, short: float = 0.0) -> float:
+        """Integral of the root of the curvature, m^1/2, from the last row to `short` m before the end of the
+        last leg, counted like `left`, blends left out. Divided by the root of an acceleration it is the least
+        time in which the way can be run with that across it."""
+        last = len(self._legs) - 1
+        return self._bent(_Part(last, False), self._legs[last].curve.length - short)
 
     def begin_at(self, way: float) -> None:
         """Let the rows begin at a place on the first leg, m from its start."""
@@ -283,6 +252,9 @@ class ChainWay:
         placed.orientation[here] = turned
         placed.straight[here] = not part.blend
         placed.bend[here] = self._bends(part, at)
+        if self._near[0] != part and along[0] > self._along:
+            # A round of a circle must not be passed over at the speed that the parts beside it have.
+            placed.bend[start] = (self._bent(part, float(at[0])) / float(along[0] - self._along)) ** 2
         placed.sharp[start] = self._is_sharp_between(self._near[0], part)
         self._near, self._along = (part, float(at[-1])), float(along[-1])
 
@@ -293,7 +265,7 @@ class ChainWay:
             return np.zeros(len(at))
         known = self._near[0] == part
         before = np.concatenate([[self._near[1] if known else at[0]], at[:-1]])
-        shares = np.linspace(0.0, 1.0, 5)
+        shares = np.linspace(0.0, 1.0, PLACES)
         places = (before[:, None] + (at - before)[:, None] * shares).ravel()
         if part.blend:
             blend = self._blends[part.leg]
@@ -301,19 +273,32 @@ class ChainWay:
             found = blend.curvature(places)
         else:
             found = np.linalg.norm(curve.bends(places), axis=1)
-        found = found.reshape(-1, len(shares))
-        # Between samples a curve may dip by an eighth of their second difference.
-        dip = np.max(np.abs(np.diff(found, 2, axis=1)), axis=1) / 8.0
-        least = np.maximum(np.min(found, axis=1) - dip, 0.0)
+        least = _least(found.reshape(-1, len(shares)))
         if not known:
             least[0] = 0.0
-        return np.asarray(least)
+        return least
+
+    def _bent(self, part: _Part, at: float) -> float:
+        """`bent_to_end`, but to a place on a part behind the last row."""
+        before, start = self._near
+        found = 0.0
+        for leg in range(before.leg, part.leg + 1):
+            curve, (low, high) = self._legs[leg].curve, self._bounds(leg)
+            if leg == before.leg:
+                low = high if before.blend else start
+            if leg == part.leg and not part.blend:
+                high = at
+            if low < high and not curve.is_straight:
+                places = np.linspace(low, high, PLACES)
+                least = _least(np.linalg.norm(curve.bends(places), axis=1)[None])[0]
+                found += float(np.sqrt(least)) * (high - low)
+        return found
 
     # ---- Order of the parts
 
     def _bounds(self, leg: int) -> tuple[float, float]:
         """First and last place on a leg that no blend takes."""
-        before = self._blends[leg - 1] if leg else None
+        before = self._blends[leg - 1] if 0 < leg <= len(self._blends) else None
         behind = self._blends[leg] if leg < len(self._blends) else None
         low = 0.0 if before is None else before.distance
         length = self._legs[leg].curve.length
@@ -383,3 +368,9 @@ class ChainWay:
     def _is_sharp_between(self, one: _Part, other: _Part) -> bool:
         low, high = sorted((one.leg, other.leg))
         return any(self._blends[leg] is None for leg in range(low, high))
+
+
+def _least(found: Floats) -> Floats:
+    """Least values (R,) of curves sampled evenly (R, K): they may dip by an eighth of a second difference."""
+    dip = np.max(np.abs(np.diff(found, 2, axis=1)), axis=1) / 8.0
+    return np.asarray(np.maximum(np.min(found, axis=1) - dip, 0.0))

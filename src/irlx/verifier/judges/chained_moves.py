@@ -13,7 +13,8 @@ from irlx.streams.joint_stream import Floats, Integers
 from irlx.verifier.chain_legs import ChainLegs, end_reach
 from irlx.verifier.demands import Demand
 from irlx.verifier.findings.tally import Tally
-from irlx.verifier.geometry.chains import ChainWay, Placed
+from irlx.verifier.geometry.chains import ChainWay
+from irlx.verifier.geometry.placed import Placed
 from irlx.verifier.geometry.rotations import angle_between
 from irlx.verifier.geometry.task_turns import followed_off, turned_off
 from irlx.verifier.judges.chain_end import ways_on_last_circle
@@ -194,7 +195,9 @@ class ChainRows:
         """The path has been run up to the corner, and in it the tool keeps to its speed."""
         law = self._chain[-1].move.law
         missing = np.array([self._way.left - self._reaches[1] - float(self._alongs[-1])])
-        allowed = law.speed * self._dt * (1.0 + PROGRAM_EXCESS) + PATH_POSITION
+        allowed = PATH_POSITION
+        if self._goes_in_a_tick(self._way.bent_to_end(self._reaches[1])):
+            allowed += law.speed * self._dt * (1.0 + PROGRAM_EXCESS)
         self._tallies.progress.add(self._lasts[-1:], missing, allowed, rank=missing / allowed, unit="m")
         moved = np.linalg.norm(np.diff(held.positions, axis=0), axis=1)
         turned = turned_off(held.rotations[1:], held.rotations[:-1, :3])
@@ -342,6 +345,11 @@ class ChainRows:
         """How much of the way, m, may be run between two rows: legs that lead back to where the tool is, when
         a tick is enough for them, leave no trace."""
         legs, reached = self._legs, self._way.leg
-        if reached == len(legs.legs) - 1:
+        if reached == len(legs.legs) - 1 or not self._goes_in_a_tick(self._way.bent_to_end()):
             return 0.0
         return float(np.min(np.minimum(legs.speed * self._dt, legs.acc * self._dt**2)[reached:]))
+
+    def _goes_in_a_tick(self, bent: float) -> bool:
+        """Whether a tick is enough for what is left of curved legs, by their ACC across."""
+        most = sqrt(float(np.max(self._legs.acc[self._way.leg :])))
+        return bent <= most * self._dt * (1.0 + PROGRAM_EXCESS)
