@@ -90,6 +90,16 @@ def fast_round(kit) -> JointStream:
     return maker.stream()
 
 
+def tight_corner(kit, speed: float, distance: float = 1e-4) -> JointStream:
+    """Lines of 2 mm and a blend on which hardly any row lies."""
+    maker = kit.Maker(np.array([0.0, 0.2, -0.1, 0.3, 0.2, -0.3, 0.1]))
+    curves = lines(start_of(kit), [(0.002, 0, 0), (0, 0.002, 0)], [(0, 0, 0), (0, 0, 0)])
+    way = way_of(curves, [distance])
+    blocks = [lin(curves[0], Blend(distance=distance)), lin(curves[1])]
+    run(maker, way, blocks, trapezoid(way.length, speed, 1.5, DT))
+    return maker.stream()
+
+
 def sharp_corner_passed(kit) -> JointStream:
     """Through the very points of a PATH, without a stop."""
     maker = kit.Maker(np.array([0.0, 0.2, -0.1, 0.3, 0.2, -0.3, 0.1]))
@@ -192,6 +202,7 @@ DAMAGES = {
         4,
     ),
     "too fast round the corner": (fast_round, "programmed speed", 4),
+    "too fast round a corner between two rows": (lambda kit: tight_corner(kit, 0.05), "programmed speed", 5),
     "corner cut and no blend asked for": (lambda kit: with_block(corner(kit), 1, blend=None), "stops", 4),
     "corner cut behind what stops": (lambda kit: with_something_between(corner(kit)), "stops", 4),
     "a blend into a PTP": (
@@ -289,6 +300,12 @@ def test_what_is_off_is_found(name: str, gantry_kit, robot) -> None:
     report: Report = verify_stream(make(gantry_kit), robot)
     assert report[check].status == "failed", str(report)
     assert report[check].first.line == line, report[check].text
+
+
+def test_a_corner_between_two_rows_may_be_run_as_fast_as_it_bends(gantry_kit, robot) -> None:
+    """The blend is 7 um long and allows 2.6 mm/s, 10 um a tick: a row before it, one behind."""
+    report = verify_stream(tight_corner(gantry_kit, 0.0025, 4e-6), robot)
+    assert report.passed, str(report)
 
 
 def test_a_tick_earlier_or_later_may_hand_over(gantry_kit, robot) -> None:

@@ -13,13 +13,14 @@ from irlx.verifier.geometry.allowance import EXACT, Allowance
 from irlx.verifier.geometry.blends import Blend
 from irlx.verifier.geometry.corners import Corner, distance_taken
 from irlx.verifier.geometry.curves import Curve, Pose, rounds
-from irlx.verifier.geometry.placed import Placed
+from irlx.verifier.geometry.placed import Placed, Stretches
 
 FIRST_LOOK = 64
 """Rows looked at together on a part at first, then twice as many, and so on."""
 
-PLACES = 5
-"""Places between two rows, those of the rows included, at which the curvature is looked at."""
+PLACES, CELLS = 5, 8
+"""Places between two rows on a part, those of the rows included, at which the curvature is looked at; cells
+into which each part is cut that lies between two rows."""
 
 
 @dataclass(frozen=True)
@@ -77,12 +78,10 @@ class ChainWay:
         known = len(self._bases) - 1
         return self._bases[known] + sum(leg.curve.length for leg in self._legs[known:])
 
-    def bent_to_end(self, short: float = 0.0) -> float:
-        """Integral of the root of the curvature, m^1/2, from the last row to `short` m before the end of the
-        last leg, counted like `left`, blends left out. Divided by the root of an acceleration it is the least
-        time in which the way can be run with that across it."""
+    def stretches_to_end(self, short: float = 0.0) -> Stretches:
+        """The way from the last row to `short` m before the end of the last leg, counted like `left`."""
         last = len(self._legs) - 1
-        return self._bent(_Part(last, False), self._legs[last].curve.length - short)
+        return self._stretches(_Part(last, False), self._legs[last].curve.length - short)
 
     def begin_at(self, way: float) -> None:
         """Let the rows begin at a place on the first leg, m from its start."""
@@ -252,9 +251,8 @@ class ChainWay:
         placed.orientation[here] = turned
         placed.straight[here] = not part.blend
         placed.bend[here] = self._bends(part, at)
-        if self._near[0] != part and along[0] > self._along:
-            # A round of a circle must not be passed over at the speed that the parts beside it have.
-            placed.bend[start] = (self._bent(part, float(at[0])) / float(along[0] - self._along)) ** 2
+        if self._order(part) > self._order(self._near[0]):
+            placed.over[start] = self._stretches(part, float(at[0]))
         placed.sharp[start] = self._is_sharp_between(self._near[0], part)
         self._near, self._along = (part, float(at[-1])), float(along[-1])
 
@@ -278,21 +276,35 @@ class ChainWay:
             least[0] = 0.0
         return least
 
-    def _bent(self, part: _Part, at: float) -> float:
-        """`bent_to_end`, but to a place on a part behind the last row."""
-        before, start = self._near
-        found = 0.0
-        for leg in range(before.leg, part.leg + 1):
-            curve, (low, high) = self._legs[leg].curve, self._bounds(leg)
-            if leg == before.leg:
-                low = high if before.blend else start
-            if leg == part.leg and not part.blend:
-                high = at
-            if low < high and not curve.is_straight:
-                places = np.linspace(low, high, PLACES)
-                least = _least(np.linalg.norm(curve.bends(places), axis=1)[None])[0]
-                found += float(np.sqrt(least)) * (high - low)
-        return found
+    def _stretches(self, part: _Part, at: float) -> Stretches:
+        """The way from the last row to a place on the same part or one behind it."""
+        (here, start), found = self._near, [Stretches(np.zeros(0), np.zeros(0))]
+        for order in range(self._order(here), self._order(part) + 1):
+            leg, is_blend = divmod(order, 2)
+            blend = self._blends[leg] if is_blend and leg < len(self._blends) else None
+            if is_blend and blend is None:
+                continue
+            low, high = (0.0, 1.0) if is_blend else self._bounds(leg)
+            low = start if order == self._order(here) else low
+            high = max(low, at if order == self._order(part) else high)
+            found.append(self._bent_stretches(leg, blend, low, high))
+        return Stretches(*(np.concatenate(parts) for parts in zip(*found, strict=True)))
+
+    def _bent_stretches(self, leg: int, blend: Blend | None, low: float, high: float) -> Stretches:
+        """A leg, or the blend at its end, between two of its places."""
+        curve, corner = self._legs[leg].curve, self._legs[leg].corner
+        if blend is None and curve.is_straight:
+            return Stretches(np.array([high - low]), np.zeros(1))
+        if blend is not None and corner.may_be_less:
+            # Rows need not tell which blend was run, and another one may take less time.
+            return Stretches(np.diff(blend.way(np.array([low, high]))), np.zeros(1))
+        places = np.linspace(low, high, 2 * CELLS + 1)
+        if blend is None:
+            ways, bends = places, np.linalg.norm(curve.bends(places), axis=1)
+        else:
+            ways, bends = blend.way(places), blend.curvature(places)
+        cells = np.column_stack([bends[:-2:2], bends[1::2], bends[2::2]])
+        return Stretches(np.diff(ways[::2]), _least(cells))
 
     # ---- Order of the parts
 

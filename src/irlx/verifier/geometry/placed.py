@@ -2,12 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from irlx.streams.joint_stream import Floats, Integers
+
+
+class Stretches(NamedTuple):
+    """Lengths `ways` (K,) m of stretches run one after another, and the least curvature `bends` (K,) on each,
+    1/m."""
+
+    ways: Floats
+    bends: Floats
+
+    def fastest(self, speed: float, acc: float) -> float:
+        """Largest mean speed, m/s, on all of them: at most `speed` m/s and, by `acc` m/s2 across the way,
+        the root of acc over the curvature."""
+        least = float(np.sum(self.ways * np.maximum(1.0 / speed, np.sqrt(self.bends / acc))))
+        return float(np.sum(self.ways)) / least if least > 0.0 else speed
 
 
 @dataclass(frozen=True, eq=False)
@@ -16,9 +31,9 @@ class Placed:
 
     `position` m and `orientation` rad off it; `along` the way from its start, m; `leg` the number of the leg,
     whose end is the point of a blend nearest to the corner; `straight`: on a leg itself, not on a blend;
-    `bend`: least curvature on the way from the row before, 1/m, where it leads over several parts that of a
-    circle on which it takes as long as on their legs; `sharp`: a corner without a blend was passed
-    on the way from the row before. `wanted` (R, 3, 3): the chain's own orientation there, told where not all
+    `bend`: least curvature on the way from the row before, 1/m; `sharp`: a corner without a blend was passed
+    on the way from the row before. `over`: by number of the row, the way from the row before where it leads
+    from one part to others. `wanted` (R, 3, 3): the chain's own orientation there, told where not all
     turns count.
     """
 
@@ -30,6 +45,7 @@ class Placed:
     bend: Floats
     sharp: NDArray[np.bool_]
     wanted: Floats | None = None
+    over: dict[int, Stretches] = field(default_factory=dict)
 
     @classmethod
     def empty(cls, rows: int, all_turns: bool = True) -> Placed:
@@ -50,4 +66,5 @@ class Placed:
             self.bend[:rows],
             self.sharp[:rows],
             None if self.wanted is None else self.wanted[:rows],
+            {row: stretches for row, stretches in self.over.items() if row < rows},
         )

@@ -99,6 +99,7 @@ class ChainRows:
         self._alongs, self._points = np.zeros(2), np.array([start[0], start[0]])
         self._accelerations = np.zeros(2)
         self._speeds, self._sharp = np.zeros((3, 1)), np.zeros(1, dtype=np.bool_)
+        self._leg = np.zeros(1, dtype=np.int64)
         self._furthest, self._unknown = 0.0, False
         self._fresh = 0
         """So many of the rows judged next have fewer than two known ones before them (`ChainStart`)."""
@@ -195,9 +196,8 @@ class ChainRows:
         """The path has been run up to the corner, and in it the tool keeps to its speed."""
         law = self._chain[-1].move.law
         missing = np.array([self._way.left - self._reaches[1] - float(self._alongs[-1])])
-        allowed = PATH_POSITION
-        if self._goes_in_a_tick(self._way.bent_to_end(self._reaches[1])):
-            allowed += law.speed * self._dt * (1.0 + PROGRAM_EXCESS)
+        speed = self._way.stretches_to_end(self._reaches[1]).fastest(law.speed, law.acc)
+        allowed = speed * self._dt * (1.0 + PROGRAM_EXCESS) + PATH_POSITION
         self._tallies.progress.add(self._lasts[-1:], missing, allowed, rank=missing / allowed, unit="m")
         moved = np.linalg.norm(np.diff(held.positions, axis=0), axis=1)
         turned = turned_off(held.rotations[1:], held.rotations[:-1, :3])
@@ -275,6 +275,7 @@ class ChainRows:
         speed, turn, acc = np.maximum(both[:, 1:], both[:, :-1])
         with np.errstate(divide="ignore"):
             speed = np.minimum(speed, np.sqrt(acc / placed.bend))
+        self._slow_between(placed, speed, acc)
         moved = np.linalg.norm(np.diff(self._waiting.positions[: count + 1], axis=0), axis=1)
         turned, told = self._turned(placed), slice(max(self._fresh - 1, 0), None)
         for way, bound, unit in (
@@ -285,6 +286,19 @@ class ChainRows:
             high = bound * (1.0 + PROGRAM_EXCESS) + 2.0 * PATH_STEP / dt
             offends, use = ~(rates <= high), rates / high
             self._tallies.speed.add(rows[told], rates[told], bound[told], offends[told], use[told], unit)
+
+    def _slow_between(self, placed: Placed, speed: Floats, acc: Floats) -> None:
+        """Lower bounds of speeds (R,), where the way from the row before leads from one part to others, to
+        what all of it allows; acc (R,) bounds it across."""
+        legs, since = self._legs, np.concatenate([self._leg, placed.leg])
+        self._leg = since[-1:]
+        for row, stretches in placed.over.items():
+            passed = slice(since[row], since[row + 1] + 1)
+            fastest = stretches.fastest(
+                float(np.max(legs.speed[passed], initial=speed[row])),
+                float(np.max(legs.acc[passed], initial=acc[row])),
+            )
+            speed[row] = min(float(speed[row]), fastest)
 
     def _turned(self, placed: Placed) -> Floats:
         """Angles (R,) rad from row to row; where not all turns count, those of the path itself."""
@@ -344,12 +358,10 @@ class ChainRows:
     def _unseen_way(self) -> float:
         """How much of the way, m, may be run between two rows: legs that lead back to where the tool is, when
         a tick is enough for them, leave no trace."""
-        legs, reached = self._legs, self._way.leg
-        if reached == len(legs.legs) - 1 or not self._goes_in_a_tick(self._way.bent_to_end()):
+        legs, left = self._legs, slice(self._way.leg, None)
+        if self._way.leg == len(legs.legs) - 1:
             return 0.0
-        return float(np.min(np.minimum(legs.speed * self._dt, legs.acc * self._dt**2)[reached:]))
-
-    def _goes_in_a_tick(self, bent: float) -> bool:
-        """Whether a tick is enough for what is left of curved legs, by their ACC across."""
-        most = sqrt(float(np.max(self._legs.acc[self._way.leg :])))
-        return bent <= most * self._dt * (1.0 + PROGRAM_EXCESS)
+        fastest = self._way.stretches_to_end().fastest(
+            float(np.max(legs.speed[left])), float(np.max(legs.acc[left]))
+        )
+        return min(fastest * self._dt, float(np.min(legs.acc[left])) * self._dt**2)
