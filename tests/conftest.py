@@ -51,6 +51,7 @@ def pytest_configure(config: pytest.Config) -> None:
     if threading.current_thread() is threading.main_thread():
         # A shell starts its background jobs with interrupts ignored, and children inherit that.
         signal.signal(signal.SIGINT, signal.default_int_handler)
+    os.fsync = _asked_to_store
     # Python may have been told to write no bytecode, but to rewrite all assertions anew takes 12 s.
     sys.dont_write_bytecode = False
     if hasattr(config.option, "loadscopereorder"):
@@ -59,6 +60,15 @@ def pytest_configure(config: pytest.Config) -> None:
     if not hasattr(config, "workerinput"):
         # Some tests start irlx as a process, which writes none.
         compileall.compile_dir(SOURCE, quiet=2)
+
+
+def _asked_to_store(descriptor: int) -> None:
+    """In place of `os.fsync` within the tests: what is open counts as stored.
+
+    A disk takes some 10 ms to store a file, thousands of times, and no test can see whether it has. That it is
+    asked, in time, `streams/test_formats.py` looks at; processes that tests start do ask.
+    """
+    os.fstat(descriptor)
 
 
 @pytest.hookimpl(wrapper=True)

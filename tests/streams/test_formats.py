@@ -156,6 +156,26 @@ def test_full_disk_leaves_nothing(
     assert [content_of(path) for path in tmp_path.iterdir()] == [before]
 
 
+@pytest.mark.req("STR-05")
+@pytest.mark.parametrize("ending", KNOWN_ENDINGS)
+def test_content_is_stored_before_it_has_its_name_and_the_name_after(
+    ending: str, good: JointStream, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """So that after a loss of power a file under its name is whole."""
+    path = tmp_path / f"a{ending}"
+    stored: list[tuple[int, bool]] = []
+
+    def store(descriptor: int) -> None:
+        stored.append((os.fstat(descriptor).st_ino, path.exists()))
+
+    monkeypatch.setattr(os, "fsync", store)
+    write_stream(good, path)
+    made = [path, *path.iterdir()] if ending in FOLDERS else [path]
+    before = {number for number, named in stored if not named}
+    assert before >= {file.stat().st_ino for file in made}
+    assert stored[-1] == (tmp_path.stat().st_ino, True)
+
+
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
 def test_a_failing_write_is_coded(tmp_path: Path) -> None:
     file = AtomicFile(tmp_path / "a")
