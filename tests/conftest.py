@@ -20,6 +20,8 @@ SUITE = 5000
 """Tests from which on a run is taken for that of the suite, whose time is watched."""
 LONGEST = 15.0
 """Seconds that the tests of a file may take together: the workers share out whole files."""
+GARBAGE = 50_000, 20, 20
+"""Objects after which Python looks for garbage, a younger generation each."""
 FIRST = [
     "report/page/test_in_browser.py",
     "koch/test_experiments_command.py",
@@ -52,6 +54,7 @@ def pytest_configure(config: pytest.Config) -> None:
         # A shell starts its background jobs with interrupts ignored, and children inherit that.
         signal.signal(signal.SIGINT, signal.default_int_handler)
     os.fsync = _asked_to_store
+    gc.disable()
     # Python may have been told to write no bytecode, but to rewrite all assertions anew takes 12 s.
     sys.dont_write_bytecode = False
     if hasattr(config.option, "loadscopereorder"):
@@ -103,9 +106,14 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 def pytest_collection_finish() -> None:
-    """Thousands of waiting tests are not looked through at every collection of garbage: a twentieth of it."""
+    """Garbage is collected from here on, seldom, and none of it among thousands of waiting tests.
+
+    While modules are loaded and tests are made there is none, and to look for it takes a sixth of the time.
+    """
     gc.collect()
     gc.freeze()
+    gc.set_threshold(*GARBAGE)
+    gc.enable()
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:

@@ -15,8 +15,8 @@ PROGRAM = """PROGRAM p;
 VAR MAIN_JOINT: back;
 BEGIN
   back := R_JOINT_ACT.M_JOINT;
-  MOVE LIN POSITION(10700, 700, 3300);
-  MOVE CIRCLE POSITION(10500, 900, 3300), POSITION(10700, 1100, 3300) ANGLE := 200;
+  MOVE LIN POSITION(11000, 850, 3400);
+  MOVE CIRCLE POSITION(10900, 950, 3400), POSITION(11000, 1050, 3400) ANGLE := 200;
   RECONFIGURATION back;
   MOVE PTP back;
 ENDPROGRAM
@@ -81,7 +81,7 @@ def test_the_summary_says_where_how_much_and_why(run):
 @pytest.mark.req("MOT-21")
 def test_the_time_lost_is_the_time_it_takes_longer(run):
     """The line alone would take a trapezoid's time; what it took longer is what its events say."""
-    way = float(np.linalg.norm([800.0, 300.0, 200.0])) * 1e-3
+    way = float(np.linalg.norm([500.0, 150.0, 100.0])) * 1e-3
     programmed = way / 1.0 + 1.0 / 2.0
     ticks = np.count_nonzero(run.block == 1) - 1
     lost = sum(event.lost for event in run.summary.slowed if event.line == 5)
@@ -165,9 +165,9 @@ def test_a_tick_is_explained(run, shorter):
 
 
 def test_ticks_without_a_path_are_explained_too(place):
-    """The program without its circle, as slow."""
+    """The program without its circle, and with a line too short to be slowed."""
     text = "".join(line for line in PROGRAM.splitlines(keepends=True) if "CIRCLE" not in line)
-    (place / "p.irl").write_text(text, encoding="utf-8")
+    (place / "p.irl").write_text(text.replace("11000, 850, 3400", "11300, 940, 3460"), encoding="utf-8")
     run = irlx.run(place / "p.irl")
     for block, motion in ((2, "RECONFIGURATION"), (3, "MOVE PTP")):
         tick = int(np.flatnonzero(run.block == block)[5])
@@ -183,6 +183,10 @@ def test_explained_on_the_terminal(shorter, capsys):
     assert text.startswith("tick 24 (1.2 s), line 5: MOVE LIN, row of a motion planned as a whole\n")
     for word in ("demand ", "criterion ", "active ", "joint_11", "deg", "mm", "least motion"):
         assert word in text
+
+
+def test_a_tick_that_no_motion_has(shorter, capsys):
+    (shorter / "p.irl").write_text("PROGRAM p;\nBEGIN\n  MOVE_INC LIN POSITION(0, 0, 5);\nENDPROGRAM\n")
     assert main(["run", "p.irl", "-o", "out.npz", "--no-verify", "--explain-tick", "100000"]) == 0
     assert "tick 100000: no motion has it" in capsys.readouterr().out
 

@@ -116,7 +116,9 @@ def load_robot(
     carriers = _carriers(section, held, file, bound)
     slides = {joint.name for joint in held.joints if joint.is_prismatic}
     locked = {name: value * (1e-3 if name in slides else _DEGREE) for name, value in section.locked.items()}
-    robot = with_mesh_files(_read(text, section, locked, file, carriers), urdf_folder(model, folder))
+    again = locked != dict.fromkeys(locked, 0.0) or carriers
+    read = _read(text, section, locked, file, carriers) if again else held
+    robot = with_mesh_files(read, urdf_folder(model, folder))
     return with_task(with_origins(robot, section, file), _own_task(section), file)
 
 

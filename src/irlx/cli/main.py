@@ -7,6 +7,7 @@ error; 130 interrupted, 128 + N ended by signal N.
 from __future__ import annotations
 
 import argparse
+import gc
 import os
 import sys
 from collections.abc import Sequence
@@ -22,6 +23,8 @@ from irlx.cli.stopping import Stopped, heard_signal, heed_signals, ignore_signal
 if TYPE_CHECKING:
     from irlx.diagnostics import Diagnostic
 
+_SELDOM = 50_000, 20, 20
+"""Objects after which Python looks for garbage, of each generation; its own are 700, 10, 10."""
 _COMMANDS = (
     "demo",
     "run",
@@ -176,6 +179,8 @@ def use_one_thread() -> None:
 
 def entry_point() -> None:
     """Console entry: `irlx`."""
+    # Loading libraries leaves none, and to look for it takes a twentieth of a short run.
+    gc.set_threshold(*_SELDOM)
     use_one_thread()
     heed_signals()
     take_channels()

@@ -15,12 +15,13 @@ def pairs_that_could_meet(robot: RobotDescription) -> tuple[tuple[str, str], ...
     """
     origin = {joint.child: joint for joint in robot.joints}
     axes = {joint.name for joint in robot.moving}
-    links = [link for link in _outwards(robot) if robot.solids.get(link)]
+    solid = {link for link, own in robot.solids.items() if own}
+    inwards = {link: _inwards(origin, link) for link in _outwards(robot) if link in solid}
     found = []
-    for first, second in combinations(links, 2):
-        joints, between = _way(origin, first, second)
-        moved = any(joint.name in axes for joint in joints)
-        if moved and any(robot.solids.get(link) for link in between):
+    for first, second in combinations(inwards, 2):
+        joints = _way(inwards[first], inwards[second])
+        between = {link for joint in joints for link in (joint.parent, joint.child)} - {first, second}
+        if not axes.isdisjoint(joint.name for joint in joints) and not solid.isdisjoint(between):
             found.append((first, second))
     return tuple(found)
 
@@ -33,13 +34,12 @@ def _outwards(robot: RobotDescription) -> list[str]:
     return found
 
 
-def _way(origin: dict[str, Joint], first: str, second: str) -> tuple[list[Joint], set[str]]:
-    """Joints and links on the way between two links of the tree, the two left out."""
-    up, down = _inwards(origin, first), _inwards(origin, second)
-    shared = {joint.name for joint in up} & {joint.name for joint in down}
-    joints = [joint for joint in up + down if joint.name not in shared]
-    links = {link for joint in joints for link in (joint.parent, joint.child)}
-    return joints, links - {first, second}
+def _way(up: list[Joint], down: list[Joint]) -> list[Joint]:
+    """Joints on the way between two links of the tree, of those from each of them inwards."""
+    shared = 0
+    while shared < min(len(up), len(down)) and up[~shared] is down[~shared]:
+        shared += 1
+    return up[: len(up) - shared] + down[: len(down) - shared]
 
 
 def _inwards(origin: dict[str, Joint], link: str) -> list[Joint]:
