@@ -24,12 +24,11 @@ GARBAGE = 50_000, 20, 20
 """Objects after which Python looks for garbage, a younger generation each."""
 FIRST = [
     "report/page/test_in_browser.py",
-    "koch/test_experiments_command.py",
+    "koch/test_experiments.py",
     "test_tolerance.py",
     "test_slowdown_acceptance.py",
     "test_readme.py",
     "test_ptp_beside_paths.py",
-    "koch/test_peak_of_joint_7.py",
     "cli/test_slowed_run.py",
     "cli/test_terminal.py",
     "cli/test_commands.py",
@@ -46,6 +45,8 @@ FIRST = [
     "cli/test_pages_true.py",
 ]
 """Long files begin first: one that began last would keep a worker when the other is done."""
+TOGETHER = ("tests/koch/", "tests/report/page/")
+"""Folders whose files go to one worker: they share runs, and a browser."""
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -72,6 +73,20 @@ def _asked_to_store(descriptor: int) -> None:
     asked, in time, `streams/test_formats.py` looks at; processes that tests start do ask.
     """
     os.fstat(descriptor)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
+    """With `--dist loadfile` the files of some folders stay together."""
+    if config.getvalue("dist") != "loadfile":
+        return None
+    from xdist.scheduler import LoadFileScheduling
+
+    class LoadTogether(LoadFileScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            return next(filter(nodeid.startswith, TOGETHER), super()._split_scope(nodeid))
+
+    return LoadTogether(config, log)
 
 
 @pytest.hookimpl(wrapper=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
 from itertools import pairwise
 from pathlib import Path
 
@@ -11,6 +10,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import irlx
+from kept_runs import kept_run
 
 PROGRAMS = Path(__file__).parents[2] / "programs" / "koch"
 
@@ -74,9 +74,8 @@ def demanded(tick_ms: int) -> tuple[np.ndarray, Rotation]:
 def experiment():
     """`experiment(name, tick_ms, cell)`: the finished run of a program and a cell of programs/koch."""
 
-    @cache
     def run(name: str, tick_ms: int, cell: str = "square") -> irlx.Run:
-        return irlx.run(PROGRAMS / f"{name}.irl", cell=PROGRAMS / f"{cell}.toml", tick_ms=tick_ms)
+        return kept_run(PROGRAMS / f"{name}.irl", PROGRAMS / f"{cell}.toml", tick_ms=tick_ms)
 
     return run
 

@@ -298,5 +298,6 @@ def test_position_limits_of_the_cell_are_never_passed(experiment, name: str, tic
 
 def test_the_same_program_gives_the_same_bytes(experiment, tmp_path) -> None:
     experiment("square_cyclic", 50).save(tmp_path / "first.irdata")
-    experiment.__wrapped__("square_cyclic", 50).save(tmp_path / "again.irdata")
+    again = irlx.run(PROGRAMS / "square_cyclic.irl", cell=PROGRAMS / "square.toml", tick_ms=50)
+    again.save(tmp_path / "again.irdata")
     assert (tmp_path / "first.irdata").read_bytes() == (tmp_path / "again.irdata").read_bytes()

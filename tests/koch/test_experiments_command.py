@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 import irlx
+from kept_runs import kept_run
 from long_run import first
 
 KOCH = Path(__file__).parents[2] / "programs" / "koch"
@@ -18,12 +19,16 @@ SOURCE = Path(irlx.__file__).parents[1]
 
 @pytest.fixture(scope="module")
 def experiments():
-    """The script as a module: a run that several tests ask it for is made once."""
+    """The script as a module; a run that tests of this folder have asked for is not made again."""
     before = set(sys.modules)
     with pytest.MonkeyPatch.context() as patch:
         patch.syspath_prepend(str(KOCH))
         import experiments
 
+        def run_of(program: str, cell: str, tick: float) -> irlx.Run:
+            return kept_run(KOCH / program, KOCH / cell, tick_ms=tick)
+
+        patch.setattr(experiments, "run_of", run_of)
         yield experiments
     for name in ("experiments", "experiment_facts", "experiment_figures"):
         if name not in before:
