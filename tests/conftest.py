@@ -69,8 +69,8 @@ def pytest_configure(config: pytest.Config) -> None:
 def _asked_to_store(descriptor: int) -> None:
     """In place of `os.fsync` within the tests: what is open counts as stored.
 
-    A disk takes some 10 ms to store a file, thousands of times, and no test can see whether it has. That it is
-    asked, in time, `streams/test_formats.py` looks at; processes that tests start do ask.
+    A disk takes some 10 ms to store a file, thousands of times, and no test can see whether it has. That it
+    is asked in time, `streams/test_formats.py` looks at; processes that tests start do ask.
     """
     os.fstat(descriptor)
 

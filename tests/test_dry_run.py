@@ -25,9 +25,9 @@ BEGIN
   MOVE LIN p SPEED := 1500, ACC := 9000;
   MOVE LIN home SPEED := 50;
   OUT_1 := TRUE;
-  MOVE LIN POSITION(1500, 0, 0);
+  MOVE LIN POSITION(800, 200, 324);
   MOVE LIN q;
-  MOVE LIN POSITION(0, 0, 2000);
+  MOVE LIN POSITION(441, 200, 1500);
 ENDPROGRAM;
 """
 CELL = '[robot]\nmodel = "arm7"\n[signals.outputs]\n'

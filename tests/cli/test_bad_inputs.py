@@ -166,7 +166,7 @@ def test_a_pose_out_of_reach_in_the_third_move(inside, folder, names):
 VAR POSITION: near := (441, 160, 324);
 BEGIN
   MOVE LIN near, POSITION(441, 200, 324);
-  MOVE LIN POSITION(1500, 200, 324);
+  MOVE LIN POSITION(800, 200, 324);
 ENDPROGRAM
 """
     write(folder, "p.irl", text)
@@ -179,7 +179,7 @@ ENDPROGRAM
     assert "joint_" in message
     assert "out of reach" in message
     assert "leaves" in message
-    assert "MOVE LIN POSITION(1500, 200, 324);" in done.stderr
+    assert "MOVE LIN POSITION(800, 200, 324);" in done.stderr
     # The asked names only ever hold complete streams.
     assert names(folder) == ["out.partial.csv", "out.partial.irdata", *UNCHANGED]
     assert "marked incomplete: out.partial.irdata" in done.stderr

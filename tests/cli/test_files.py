@@ -118,7 +118,7 @@ def test_a_stream_that_is_left_leaves_the_file(place, folder):
 
 @pytest.mark.req("LANG-42")
 @pytest.mark.parametrize(
-    "end", ["MOVE LIN POSITION(1500, 260, 325);", "i := 1 DIV i;", "HALT;", "READ(i);", ""]
+    "end", ["MOVE LIN POSITION(800, 260, 325);", "i := 1 DIV i;", "HALT;", "READ(i);", ""]
 )
 def test_what_was_written_is_there_however_it_ends(place, inside, folder, end):
     place(program(f"i := 0; OPEN(f, 'log.txt', 'WRITE'); WRITE('so ', 'far'); WRITELN(f, 'kept');\n{end}"))

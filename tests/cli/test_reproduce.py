@@ -106,7 +106,7 @@ def test_other_versions_are_told_and_are_no_difference(
 
 
 def test_a_run_that_ended_in_an_error_is_made_again(folder: Path) -> None:
-    text = TEXT.replace("ENDPROGRAM", "  MOVE LIN (1500, 0, 0);\nENDPROGRAM")
+    text = TEXT.replace("ENDPROGRAM", "  MOVE LIN (800, 200, 325);\nENDPROGRAM")
     Path("p.irl").write_text(text, encoding="utf-8")
     assert main(["run", "p.irl", "--inputs", "in.csv", "-o", "p.irdata"]) == 1
     assert irlx.reproduce("p.partial.irdata").same_bytes

@@ -79,7 +79,7 @@ def test_files_are_those_of_a_run_in_memory(program: Path, whole: irlx.Run, tmp_
 def test_a_run_that_ends_in_an_error_leaves_partial_files(
     program: Path, whole: irlx.Run, tmp_path: Path
 ) -> None:
-    text = TEXT.replace("CYCLICEND;", "MOVE LIN POSITION(1500, 0, 0);")
+    text = TEXT.replace("CYCLICEND;", "MOVE LIN POSITION(900, 700, 0);")
     program.write_text(text, encoding="utf-8")
     with pytest.raises(irlx.RunError) as caught:
         irlx.record(program, [tmp_path / "a.irdata", tmp_path / "a.csv"])
@@ -92,7 +92,8 @@ def test_a_run_that_ends_in_an_error_leaves_partial_files(
 
 
 def test_a_run_in_which_nothing_moved_leaves_no_file(program: Path, tmp_path: Path) -> None:
-    program.write_text("PROGRAM p;\nBEGIN\n  MOVE LIN POSITION(1500, 0, 0);\nENDPROGRAM;\n", encoding="utf-8")
+    text = "PROGRAM p;\nBEGIN\n  MOVE LIN POSITION(900, 700, 0);\nENDPROGRAM;\n"
+    program.write_text(text, encoding="utf-8")
     with pytest.raises(irlx.RunError) as caught:
         irlx.record(program, tmp_path / "a.irdata")
     assert caught.value.run.files == ()
