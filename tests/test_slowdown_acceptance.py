@@ -235,3 +235,30 @@ def test_wrist_path_meets_a_position_limit_on_the_way(
     _, written = wrist(tmp_path, tick, f"position = [{entries}]")
     assert written.t[-1] - written.dt <= 1.05 * WRIST_TIME
     assert np.min(np.abs(np.degrees(written.q[:, joint - 1]) - bound)) < 0.05
+
+
+@pytest.mark.req("MOT-03")
+def test_slowed_moves_that_are_joined_keep_each_its_own_acc(tmp_path) -> None:
+    """Joints slow both down and set them free again: the second one gains speed by its own ACC."""
+    (tmp_path / "p.toml").write_text(
+        '[robot]\nmodel = "arm7"\n[robot.limits]\nspeed = [22, 22, 22, 22, 22, 22, 22]\n'
+        "[motion]\ntick_ms = 10\nspeed = 300\n",
+        encoding="utf-8",
+    )
+    program = tmp_path / "p.irl"
+    program.write_text(
+        "PROGRAM p;\nBEGIN\nMOVE LIN POSITION(440, 400, 200) ACC := 4000 C_CP := 15;\n"
+        "MOVE LIN POSITION(470, 220, 420) ACC := 380;\nENDPROGRAM;\n",
+        encoding="utf-8",
+    )
+    run = kept_run(program, tmp_path / "p.toml")
+    assert run.summary.planned == 2
+    position, corner = run.tool[:, :3], np.array([0.44, 0.4, 0.2])
+    way = np.array([0.47, 0.22, 0.42]) - corner
+    along = (position - corner) @ way / np.linalg.norm(way)
+    off = np.linalg.norm(position - corner - along[:, None] * way / np.linalg.norm(way), axis=1)
+    behind = np.flatnonzero((off < 1e-9) & (along > 0.015))
+    gained = np.diff(along[behind[0] :], n=2) / 0.01**2
+    assert len(gained) > 100
+    assert 0.37 < np.max(np.abs(gained)) < 0.38 * (1.0 + 1e-5)
+    assert kept_report(program, tmp_path / "p.toml").passed

@@ -7,9 +7,11 @@ import itertools
 import numpy as np
 import pytest
 
+from irlx.motion.fastest_law import fastest_trapezoids
 from irlx.motion.line import Line
+from irlx.motion.sections import Sections
 from irlx.motion.trapezoid import Trapezoid
-from irlx.pacing.slowdown.grid import LEAST_INTERVALS, STEP, PathGrid, path_grid
+from irlx.pacing.slowdown.grid import LEAST_INTERVALS, STEP, PathGrid, acc_between, path_grid
 
 pytestmark = pytest.mark.req("MOT-21")
 
@@ -102,3 +104,27 @@ def test_corners_are_where_the_acceleration_changes(law: Trapezoid) -> None:
     inner = law.corners[1:-1]
     expected = [law.ramp, law.ramp + law.cruise] if law.cruise > 0.0 else [law.ramp]
     np.testing.assert_allclose(law.times_at(np.array(inner)), expected, rtol=1e-9)
+
+
+def test_between_knots_the_least_acc_of_all_phases_counts() -> None:
+    """Three sections with bounds of their own; some knots lie on their borders, others miss them."""
+    bounds = Sections(
+        np.array([0.1, 0.05, 0.2]), np.full(3, 0.3), np.array([2.0, 0.4, 1.0]), np.full(3, np.inf)
+    )
+    law = fastest_trapezoids(bounds, 0.35)
+    assert acc_between(law, np.array([0.0, 0.05, 0.1, 0.15, 0.25, 0.35])).tolist() == [
+        2.0,
+        2.0,
+        0.4,
+        1.0,
+        1.0,
+    ]
+    assert acc_between(law, np.array([0.0, 0.09, 0.11, 0.14, 0.2, 0.35])).tolist() == [
+        2.0,
+        0.4,
+        0.4,
+        0.4,
+        1.0,
+    ]
+    assert acc_between(law, np.array([0.05, 0.2])).tolist() == [0.4]
+    assert acc_between(LAWS["trapezoid"], np.array([0.0, 0.2, 0.4])) == pytest.approx([1.5, 1.5])

@@ -86,11 +86,12 @@ def clock_bounds(
     curve: JointCurve,
     limits: JointLimits,
     rates: Array,
-    acc: float,
+    acc: float | Array,
     knots: Array | None = None,
     reserves: Reserves = PLANNED,
 ) -> ClockBounds:
-    """Bounds on a curve under joint limits, a programmed rate ds/dt (N + 1,), and |d2s/dt2| <= acc.
+    """Bounds on a curve under joint limits, a programmed rate ds/dt (N + 1,), and |d2s/dt2| <= acc, (N,) or
+    the same everywhere.
 
     `knots` (N + 1,) of the clock are those of the curve where they are not given; `reserves` are kept for
     what happens between the points.
@@ -138,7 +139,7 @@ def _lower_cap(
 
 
 def _lines(
-    first: Array, second: Array, widths: Array, limits: JointLimits, acc: float, reserve: float
+    first: Array, second: Array, widths: Array, limits: JointLimits, acc: float | Array, reserve: float
 ) -> tuple[Array, Array, Array, Joints, Array, Joints]:
     """top, bottom, slope (N, K), joint (K,) of the lines; x by points that only bend, its joint (N,)."""
     intervals, points, joints = first.shape
@@ -156,7 +157,7 @@ def _lines(
     worst = np.argmin(bend, axis=1)
     number = np.tile(np.arange(joints), points)
     known = np.isfinite(low[number]) | np.isfinite(high[number])
-    own = np.full((intervals, 1), acc)
+    own = np.broadcast_to(np.reshape(acc, (-1, 1)), (intervals, 1)).astype(np.float64)
     flatten = [part.reshape(intervals, -1)[:, known] for part in (top, bottom, slope)]
     return (
         np.hstack([flatten[0], own]),

@@ -27,6 +27,9 @@ LEAST_INTERVALS = 40
 MOST_INTERVALS = 20_000
 """More knots would cost time and memory; a motion this long has them close enough."""
 
+_ON_A_KNOT = 1e-9
+"""A corner nearer to a knot than this part of an interval lies on it."""
+
 _NEAREST_CORNERS = 1e-4
 """Corners closer than this part of an interval are one: a curve through knots so close bends by rounding."""
 
@@ -86,6 +89,20 @@ def path_grid(path: PosePath, law: TimeLaw, spacing: Spacing = FINE) -> PathGrid
     ]
     s = np.concatenate([[0.0], *pieces])
     return PathGrid(s, np.diff(law.times_at(s)), law.rates_at(s), path.poses(s), step)
+
+
+def acc_between(law: TimeLaw, s: Array) -> Array:
+    """Largest |d2s/dt2| that a law allows anywhere between neighbours of the ways s (N + 1,): (N,).
+
+    Moves joined to one path have each their own; the law has corners where one hands over to the next.
+    """
+    acc = law.acc_at(0.5 * (s[:-1] + s[1:]))
+    corners = np.array(law.corners[1:-1])
+    interval = np.clip(np.searchsorted(s, corners, side="right") - 1, 0, len(acc) - 1)
+    beside = np.minimum(corners - s[interval], s[interval + 1] - corners)
+    inside = beside > _ON_A_KNOT * (s[interval + 1] - s[interval])
+    np.minimum.at(acc, interval[inside], law.acc_at(corners[inside]))
+    return acc
 
 
 def _apart(corners: tuple[float, ...], least: float) -> list[float]:

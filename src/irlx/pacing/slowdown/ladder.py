@@ -49,7 +49,7 @@ def timed_curves(
     grid: PathGrid,
     walked: Array,
     bounds: tuple[Array, Array],
-    acc: float,
+    acc: float | Array,
     pinned: Sequence[int] = (),
     reserve: float = 0.0,
     least_gain: float = 0.0,
@@ -58,9 +58,10 @@ def timed_curves(
     """The rungs for the walked postures (N + 1, n), fastest first; none that leaves the position limits or
     comes too near to something. That is looked at when a rung is asked for.
 
-    `bounds` are lower and upper positions (N + 1, n), `acc` the largest |d2s/dt2|; the postures of the
-    knots `pinned` stay; `reserve` (m) is kept beside margins. Rungs behind one that does not gain the part
-    `least_gain` of the time come last, whatever their clock; so do all behind a walk that is not `kinked`.
+    `bounds` are lower and upper positions (N + 1, n), `acc` the largest |d2s/dt2|, (N,) or one; the postures
+    of the knots `pinned` stay; `reserve` (m) is kept beside margins. Rungs behind one that does not gain the
+    part `least_gain` of the time come last, whatever their clock; so do all behind a walk that is not
+    `kinked`.
     """
     programmed = float(np.sum(grid.times))
     known = np.isfinite(model.limits.acceleration_upper) | np.isfinite(model.limits.acceleration_lower)
@@ -113,7 +114,7 @@ def _timed(
     grid: PathGrid,
     walked: Array,
     bounds: tuple[Array, Array],
-    acc: float,
+    acc: float | Array,
     rung: Smoothing | None,
     pinned: Sequence[int],
     reserve: float,

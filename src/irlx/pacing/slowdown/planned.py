@@ -20,7 +20,7 @@ from irlx.pacing.slowdown.clock import PlannedClock
 from irlx.pacing.slowdown.curve import JointCurve
 from irlx.pacing.slowdown.drawn_end import with_drawn_end
 from irlx.pacing.slowdown.elastic_walk import elastic_walk
-from irlx.pacing.slowdown.grid import PathGrid, path_grid
+from irlx.pacing.slowdown.grid import PathGrid, acc_between, path_grid
 from irlx.pacing.slowdown.ladder import TimedCurve, places_between, timed_curves
 from irlx.pacing.slowdown.model import Model
 from irlx.pacing.slowdown.resample import resample
@@ -173,7 +173,7 @@ def _with_reserve(
         q = with_drawn_end(model, grid, q, bounds, task.criterion_of, through)
     least_gain = COARSE_GAIN if coarse else 0.0
     kinked = easy is None
-    curves = timed_curves(model, grid, q, bounds, task.acc, through, reserve, least_gain, kinked)
+    curves = timed_curves(model, grid, q, bounds, _acc(task, grid), through, reserve, least_gain, kinked)
     fastest = next(curves, None)
     if fastest is None:
         return _outside(model, grid, q)
@@ -199,8 +199,13 @@ def _with_reserve(
 
 
 def _with_short_ends(model: Model, timed: TimedCurve, task: MotionTask, grid: PathGrid) -> TimedCurve:
-    clock = with_short_ends(timed.clock, timed.curve, model.limits, grid.rates, task.law.rates_at, task.acc)
-    return replace(timed, clock=clock)
+    rates, acc = (grid.rates, task.law.rates_at), _acc(task, grid)
+    return replace(timed, clock=with_short_ends(timed.clock, timed.curve, model.limits, *rates, acc))
+
+
+def _acc(task: MotionTask, grid: PathGrid) -> Array:
+    """Largest |d2s/dt2| between the knots (N,): that of the whole motion, less where a move allows less."""
+    return np.minimum(task.acc, acc_between(task.law, grid.s))
 
 
 def _undisturbed(

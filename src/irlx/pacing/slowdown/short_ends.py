@@ -32,7 +32,7 @@ def with_short_ends(
     limits: JointLimits,
     rates: Array,
     rates_at: Callable[[Array], Array],
-    acc: float,
+    acc: float | Array,
 ) -> PlannedClock:
     """The clock of a motion from rest to rest, its ramps shorter where that wins `LEAST_GAIN` of its time.
 
@@ -45,7 +45,8 @@ def with_short_ends(
     least = LEAST_GAIN * duration
     if _most_gain(clock) <= least:
         return clock
-    places = [_ramp_end(clock, curve, limits, rates, rates_at, acc, last) for last in (False, True)]
+    own = np.broadcast_to(acc, len(clock.s) - 1)
+    places = [_ramp_end(clock, curve, limits, rates, rates_at, own, last) for last in (False, True)]
     gained = sum(gain for _, gain in places)
     if gained <= least:
         return clock
@@ -53,7 +54,8 @@ def with_short_ends(
     knots = np.union1d(clock.s, inner)
     programmed = rates_at(knots)
     programmed[np.searchsorted(knots, clock.s)] = rates
-    shorter = plan_clock(clock_bounds(curve, limits, programmed, acc, knots))
+    within = np.searchsorted(clock.s, knots[:-1], side="right") - 1
+    shorter = plan_clock(clock_bounds(curve, limits, programmed, own[within], knots))
     return clock if shorter is None or not shorter.duration < duration - least else shorter
 
 
@@ -70,14 +72,14 @@ def _ramp_end(
     limits: JointLimits,
     rates: Array,
     rates_at: Callable[[Array], Array],
-    acc: float,
+    acc: Array,
     last: bool,
 ) -> tuple[float, float]:
     """Where the ramp of the first or `last` interval ends or begins, and the time (s) that this wins."""
     part = slice(-2, None) if last else slice(0, 2)
     s, x = clock.s[part], float(clock.x[part][0 if last else 1])
     width, rate = float(s[1] - s[0]), float(np.sqrt(x))
-    steepest = _steepest(clock_bounds(curve, limits, rates[part], acc, s), x, last)
+    steepest = _steepest(clock_bounds(curve, limits, rates[part], acc[-1:] if last else acc[:1], s), x, last)
     if not steepest > 0.0:
         return float(s[0]), 0.0
     ways = width * _PLACES
