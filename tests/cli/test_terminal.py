@@ -7,7 +7,7 @@ import re
 import pytest
 
 import irlx
-from terminal import bare, seen
+from terminal import bare, seen, seen_inside
 
 CELL = '[robot]\nmodel = "arm7"\n[motion]\ntick_ms = 10\n'
 # Joints this slow make the tool slow down, for which the motion is planned as a whole.
@@ -73,7 +73,7 @@ def test_progress_and_a_summary_in_colour(place):
 
 @pytest.mark.req("REP-01")
 def test_it_never_mixes_with_what_the_program_says(place):
-    code, told, _ = seen(["run", "speaks.irl"], place, {"NO_COLOR": "1"})
+    code, told, _ = seen_inside(["run", "speaks.irl"], place, {"NO_COLOR": "1"})
     assert code == 0
     assert not COLOUR.search(told)
     before, after = told.split("first\r\n")
@@ -98,7 +98,7 @@ def test_a_plain_terminal(place):
 
 @pytest.mark.req("REP-01")
 def test_stdout_elsewhere_gets_nothing_but_results(place):
-    code, told, out = seen(["run", "speaks.irl"], place, piped=True)
+    code, told, out = seen_inside(["run", "speaks.irl"], place, piped=True)
     assert code == 0
     assert ESCAPE not in out
     assert out.startswith("first\nsecond\nspeaks.irl: complete, verified, ")
@@ -132,7 +132,7 @@ def test_other_commands(place, inside, arguments):
 @pytest.mark.req("STR-06")
 def test_the_verdict_of_the_verifier(place, inside):
     (place / "cut.irdata").write_text("100, 1 ;\n", encoding="utf-8")
-    code, told, _ = seen(["verify", "cut.irdata"], place)
+    code, told, _ = seen_inside(["verify", "cut.irdata"], place)
     assert code == 1
     assert lines_of(told)[-1].startswith("\N{BALLOT X} FAILED: ")
     done = inside("verify", place / "cut.irdata")
@@ -142,7 +142,7 @@ def test_the_verdict_of_the_verifier(place, inside):
 
 def test_mistakes_are_coloured_at_a_terminal_alone(place, inside):
     (place / "wrong.irl").write_text("PROGRAM wrong;\nBEGIN\n  MOVE LIN;\nENDPROGRAM;\n", encoding="utf-8")
-    code, told, _ = seen(["check", "wrong.irl"], place)
+    code, told, _ = seen_inside(["check", "wrong.irl"], place)
     assert code == 1
     assert COLOUR.search(told)
     done = inside("check", place / "wrong.irl")
