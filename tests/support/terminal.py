@@ -14,7 +14,7 @@ import termios
 import threading
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from tempfile import TemporaryFile
 from unittest import mock
@@ -106,11 +106,10 @@ def _channels(*descriptors: int) -> Iterator[None]:
 
 def _drain(master: int, told: list[bytes]) -> None:
     """Everything that appears until nobody has the other side of the terminal open."""
-    try:
+    # Linux reports the end of a terminal as an error.
+    with suppress(OSError):
         while piece := os.read(master, 65536):
             told.append(piece)
-    except OSError:
-        pass  # Linux reports the end of a terminal as an error.
 
 
 def _read(master: int, process: subprocess.Popen[bytes]) -> bytes:
