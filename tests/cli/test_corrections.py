@@ -9,9 +9,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import irlx
-from corrected import ARM, PLANNED, Corrected, Tools, corrected, files
+from corrected import ARM, PLANNED, Corrected, Tools, carried_out, corrected, files
 from irlx.job import prepare
-from irlx.pipeline import Execution
 from long_run import first
 
 DECLARED = """VAR
@@ -255,7 +254,7 @@ def test_a_correction_into_a_position_limit_stops_there(run):
 def test_a_sensor_that_says_nothing_changes_nothing(tmp_path):
     path = files(tmp_path, MOVES, ARM.format(tick=10), DECLARED)
     found = corrected(path, lambda _: None)
-    rows = [one.rows.q for one in Execution(prepare(path), planned_share=PLANNED) if one.rows is not None]
+    rows = [one.rows.q for one in carried_out(prepare(path), PLANNED)]
     np.testing.assert_array_equal(found.q[1:], np.concatenate(rows))
     assert (found.report.requests, found.report.delayed_ticks, found.report.held_ticks) == (0, 0, 0)
 

@@ -13,9 +13,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import irlx
-from corrected import PLANNED, limits_by_block
+from corrected import PLANNED, carried_out, limits_by_block
 from irlx.job import prepare
-from irlx.pipeline import Execution
 from irlx.promises import rounding_allowance
 from irlx.robot.kinematics import Kinematics
 from irlx.scene.collision_shape import collision_shape, pose_of
@@ -116,7 +115,7 @@ def keeps_limits(found) -> None:
 
 def off_path(found) -> float:
     """Most that the tool is off its planned pose · its correction, m or rad, by the verifier's kinematics."""
-    executed = [one for one in Execution(found.job, planned_share=PLANNED) if one.rows]
+    executed = carried_out(found.job, PLANNED)
     planned = np.vstack([found.job.cell.start[None], *(one.rows.q for one in executed)])
     held = len(found.q) - len(planned)
     assert held == found.stream.corrections.held_ticks
@@ -215,7 +214,7 @@ def test_a_ball_that_jumps_into_the_arm_is_left_and_told(tmp_path):
 def test_an_obstacle_that_rests_changes_nothing(tmp_path, answer):
     path = files(tmp_path)
     found = list(irlx.stream(path, obstacles=lambda _: answer))
-    rows = [one.rows.q for one in Execution(prepare(path), planned_share=PLANNED) if one.rows is not None]
+    rows = [one.rows.q for one in carried_out(prepare(path), PLANNED)]
     np.testing.assert_array_equal([one.q for one in found[1:]], np.concatenate(rows))
 
 
@@ -226,7 +225,7 @@ def test_the_arm_goes_back_to_the_plan_once_the_ball_has_gone(tmp_path):
         return {"ball": (0.149, 0.0 - 0.15 * abs(sample.t - 3.5), 0.660)}
 
     found = followed(path, there_and_back)
-    rows = [one.rows.q for one in Execution(prepare(path), planned_share=PLANNED) if one.rows is not None]
+    rows = [one.rows.q for one in carried_out(prepare(path), PLANNED)]
     planned = np.vstack([found.q[:1], *rows])
     away = np.max(np.abs(found.q - planned), axis=1)
     assert np.max(away) > 0.05

@@ -16,6 +16,7 @@ from scipy.spatial.transform import Rotation
 import irlx
 from irlx.job import prepare
 from irlx.pacing.correction.report import CorrectionReport
+from irlx.pacing.executed import Executed
 from irlx.pipeline import Execution
 from irlx.promises import rounding_allowance
 from irlx.robot.limits import JointLimits
@@ -89,9 +90,21 @@ def _poses(job, q: np.ndarray, blocks: np.ndarray, tools: Tools) -> tuple[np.nda
     return places, turns
 
 
+def carried_out(job, share: float = 1.0) -> list[Executed]:
+    """What moves or stands in a program that imports nothing, without a sensor; once for all that it gets."""
+    key = job.program.sha256, job.making.cell_sha256, job.tick_ns, share
+    if key not in _known:
+        execution = Execution(job, planned_share=share)
+        _known[key] = [one for one in execution if one.rows is not None]
+    return _known[key]
+
+
+_known: dict[tuple, list[Executed]] = {}
+
+
 def limits_by_block(job) -> dict[int, JointLimits]:
     """The whole limits in force of each block that moves or stands."""
-    executed = [one for one in Execution(job) if one.rows is not None]
+    executed = carried_out(job)
     return {one.block.id: one.rows.limits or job.cell.limits for one in executed}
 
 
@@ -116,7 +129,7 @@ def _keeps_limits(found: Corrected, job) -> None:
 
 def _goes_with_program(found: Corrected, tools: tuple[np.ndarray, np.ndarray], job, by_block: Tools) -> None:
     """Each row is the next programmed one, or stands at the last, corrected by what it says."""
-    executed = [one for one in Execution(job, planned_share=PLANNED) if one.rows is not None]
+    executed = carried_out(job, PLANNED)
     base = np.vstack([job.cell.start[None], *(one.rows.q for one in executed)])
     blocks = np.array([0] + [one.block.id for one in executed for _ in one.rows.q])
     places, turns = _poses(job, base, blocks, by_block)

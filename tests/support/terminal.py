@@ -56,7 +56,7 @@ def seen_inside(
     columns: int = 80,
     piped: bool = False,
 ) -> tuple[int, str, str]:
-    """As `seen`, without the start of a process: the terminal takes the place of channels 0 to 2 meanwhile."""
+    """As `seen`, without the start of a process: the terminal takes the place of channels 0 to 2."""
     master, slave = _terminal(columns)
     told: list[bytes] = []
     reader = threading.Thread(target=_drain, args=(master, told))
