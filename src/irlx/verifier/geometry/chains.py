@@ -165,9 +165,10 @@ class ChainWay:
         done += count
         if count == len(bad):
             return done
-        row = positions[done : done + 1]
+        row, rest = positions[done : done + 1], (positions[done:], rotations[done : len(positions)])
         if unsure[count]:
-            other = self._fitting(row, float(off[count]) - PATH_STEP)
+            better = float(off[count]) - PATH_STEP
+            other = self._fitting(row, better) or self._behind_unseen(rest, better)
             if other is not None and self._order(other) > self._order(part):
                 self._part = other
                 return done
@@ -183,9 +184,7 @@ class ChainWay:
             done += 1
         elif past[count]:
             self._part = self._next(part) or part
-        elif (
-            behind := self._behind_unseen((positions[done:], rotations[done : len(positions)]))
-        ) is not None:
+        elif (behind := self._behind_unseen(rest, PATH_POSITION)) is not None:
             self._part = behind
         else:
             # On no part at all: as far off this one as it says, with all rows that do not leave its stretch.
@@ -363,29 +362,29 @@ class ChainWay:
             return before
         return None
 
-    def _behind_unseen(self, rows: Pose) -> _Part | None:
-        """The first part on which the first of rows lies, behind corners of which no row before it tells:
-        legs may be run within a tick. They are passed as rows fit best, if any do, else as widely as may be.
-        """
+    def _behind_unseen(self, rows: Pose, within: float) -> _Part | None:
+        """The first part within so many m of the first of rows, behind corners of which no row before it
+        tells: legs may be run within a tick. They are passed as rows fit best, if any do, else as widely as
+        may be."""
         known, row = len(self._blends), rows[0][:1]
         for leg in range(known, len(self._legs) - 1):
             if self._start(_Part(leg, False)) > self._along + self._reach + PATH_POSITION:
                 break
             self._settle(leg, rows, True)
-            if self._blends[leg] is not None and self._lies_on(_Part(leg, True), row):
+            if self._blends[leg] is not None and self._lies_on(_Part(leg, True), row, within):
                 return _Part(leg, True)
-            if self._lies_on(_Part(leg + 1, False), row):
+            if self._lies_on(_Part(leg + 1, False), row, within):
                 return _Part(leg + 1, False)
         del self._blends[known:], self._ends[known:], self._bases[known + 1 :]
         return None
 
-    def _lies_on(self, part: _Part, row: Floats) -> bool:
+    def _lies_on(self, part: _Part, row: Floats, within: float) -> bool:
         if not part.blend and self._is_open(part.leg):
-            return self._off_curve(part.leg, row) <= PATH_POSITION
+            return self._off_curve(part.leg, row) <= within
         if not part.blend:
             self._settle(part.leg, (row, row), False)
         _, off, past = self._on(part, row)
-        return bool(off[0] <= PATH_POSITION and not past[0])
+        return bool(off[0] <= within and not past[0])
 
     def _off_curve(self, leg: int, row: Floats) -> float:
         """How far a row (1, 3) is off a leg, its blends left away."""
