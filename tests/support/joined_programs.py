@@ -28,6 +28,7 @@ REFUSALS = {
     "IRL345",
     "IRL421",
     "IRL422",
+    "IRL428",
     "IRL434",
     "IRL435",
     *(f"IRL{code}" for code in range(520, 526)),
