@@ -24,6 +24,7 @@ ROBOTS = {
 WAYS = [0.0, 1e-6, 0.01, 0.3, 1.0]
 """Shares of that by which a target lies beside the one before: the same, next to it, near it, anywhere."""
 RADII = [5e-4, 0.01, 0.03, 0.1, 0.3]
+TIGHT = 10_000
 REFUSALS = {
     "IRL345",
     "IRL421",
@@ -146,9 +147,25 @@ def numbers(values: np.ndarray) -> str:
 
 
 def program_of(seed: int, folder: Path) -> tuple[Path, Path]:
+    """Program and cell of a seed; from `TIGHT` on joints are slow, too, and moves have each its own ACC."""
     drawing = Drawing(seed)
-    motion = drawing.motion()
-    return written(folder, drawing.robot, drawing.body(), motion)
+    motion, body = drawing.motion(), drawing.body()
+    if seed >= TIGHT:
+        rng = np.random.default_rng([31, seed])
+        joints = drawing.start.values.size
+        limits = [f"speed = [{numbers(np.exp(rng.uniform(np.log(5.0), np.log(90.0), joints)))}]"]
+        if rng.random() < 0.5:
+            limits.append(
+                f"acceleration = [{numbers(np.exp(rng.uniform(np.log(100.0), np.log(3000.0), joints)))}]"
+            )
+        motion += "\n[robot.limits]\n" + "\n".join(limits)
+        body = "\n".join(
+            f"{line[:-1]} ACC := {np.exp(rng.uniform(np.log(30.0), np.log(2e4))):.6g};"
+            if "PTP" not in line and rng.random() < 0.7
+            else line
+            for line in body.splitlines()
+        )
+    return written(folder, drawing.robot, body, motion)
 
 
 def judged(seed: int) -> tuple[str, list[str]]:
