@@ -17,7 +17,7 @@ FOUND = [25, 52, 73, 663]
 
 @pytest.mark.parametrize(
     "seed",
-    [*FOUND, 1000, 10000, 10001, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(2000, 2200))],
+    [*FOUND, 1000, 10001, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(2000, 2200))],
 )
 def test_the_verifier_has_nothing_against_what_is_carried_out(seed: int) -> None:
     _, wrong = judged(seed)
