@@ -15,6 +15,9 @@ from irlx.verifier.geometry.corners import Corner, distance_taken
 from irlx.verifier.geometry.curves import Curve, Pose, rounds
 from irlx.verifier.geometry.placed import Placed, Stretches
 
+FEW = 16
+"""Rows that tell how corners are passed behind which the first of them lies, at most."""
+
 FIRST_LOOK = 64
 """Rows looked at together on a part at first, then twice as many, and so on."""
 
@@ -55,6 +58,7 @@ class ChainWay:
         self._part = _Part(0, False)
         self._along = 0.0
         self._near: tuple[_Part, float] = self._part, 0.0
+        self._sought_from: _Part | None = None
 
     @property
     def ends(self) -> Floats:
@@ -165,10 +169,15 @@ class ChainWay:
         done += count
         if count == len(bad):
             return done
-        row, rest = positions[done : done + 1], (positions[done:], rotations[done : len(positions)])
+        row, few = positions[done : done + 1], slice(done, min(done + FEW, len(positions)))
+        rest = positions[few], rotations[few]
         if unsure[count]:
             better = float(off[count]) - PATH_STEP
-            other = self._fitting(row, better) or self._behind_unseen(rest, better)
+            other = self._fitting(row, better)
+            if other is None and self._sought_from != part:
+                # Once on each part: where rows lie beside it all along, each of them would seek in vain.
+                self._sought_from = part
+                other = self._behind_unseen(rest, better)
             if other is not None and self._order(other) > self._order(part):
                 self._part = other
                 return done

@@ -145,14 +145,15 @@ def _fitting(
 def _fitting_first(
     legs: tuple[Curve, Curve], most: float, rows: _Rows, otherwise: float, allowance: Allowance
 ) -> float:
-    """Distance of the blend that as many of the first rows beside both curves fit as can: those behind them
-    may have left the second curve on its next blend already."""
-    for count in range(min(len(rows.way), ASKED), 0, -1):
+    """Distance of the blend that fits the first rows beside both curves, as many as may be, halved each time:
+    those behind them may have left the second curve on its next blend already."""
+    count = len(rows.way)
+    while count:
         asked = rows.part(np.arange(count))
-        found = [_fitting(legs, most, position, asked, allowance) for position in asked.positions[:2]]
-        best = min(found, key=lambda d: _worst(legs, d, asked, allowance))
+        best = _through(legs, most, asked.positions[0], TANGENTS)
         if _worst(legs, best, asked, allowance) <= NEAR:
             return best
+        count //= 2
     return otherwise
 
 
