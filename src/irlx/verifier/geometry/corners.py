@@ -150,7 +150,8 @@ def _fitting_first(
     count = len(rows.way)
     while count:
         asked = rows.part(np.arange(count))
-        best = _through(legs, most, asked.positions[0], TANGENTS)
+        # The first row may lie next to the first curve, and tell little.
+        best = _through(legs, most, asked.positions[count // 2], TANGENTS)
         if _worst(legs, best, asked, allowance) <= NEAR:
             return best
         count //= 2
