@@ -122,7 +122,7 @@ def circles_of(seed: int) -> tuple[Arc, Arc]:
 
 
 NARROW = [216, 305, 125, 304, 213, 93, 58]
-"""Seeds of blends with a bend that five samples a section miss, by 3 % up to a factor of a million."""
+"""Seeds of blends with a bend that five samples a section miss, by 3 % up to a factor of 5e7."""
 
 
 @pytest.mark.req("MOT-03")
