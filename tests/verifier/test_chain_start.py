@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from irlx.blocks import ArcCourse, PoseTarget
 from irlx.verifier.geometry.allowance import EXACT
 from irlx.verifier.geometry.arcs import arc_shape
-from irlx.verifier.geometry.chains import Leg
+from irlx.verifier.geometry.chain_parts import Leg
 from irlx.verifier.geometry.corners import Corner
 from irlx.verifier.geometry.curves import ArcCurve, LineCurve
 from irlx.verifier.judges.chain_start import ChainStart, start_of_chain

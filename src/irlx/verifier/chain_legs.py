@@ -13,7 +13,7 @@ from irlx.promises import PROGRAM_EXCESS
 from irlx.streams.joint_stream import Floats, Integers
 from irlx.verifier.demands import Demand
 from irlx.verifier.geometry.arcs import WHOLE_TURN, ArcShape, arc_shape
-from irlx.verifier.geometry.chains import Leg
+from irlx.verifier.geometry.chain_parts import Leg
 from irlx.verifier.geometry.corners import Corner
 from irlx.verifier.geometry.curves import ArcCurve, Curve, LineCurve
 from irlx.verifier.geometry.paths import TURN_RULES

@@ -3,26 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from irlx.streams.joint_stream import Floats, Integers
-
-
-class Stretches(NamedTuple):
-    """Lengths `ways` (K,) m of stretches run one after another, and the least curvature `bends` (K,) on each,
-    1/m."""
-
-    ways: Floats
-    bends: Floats
-
-    def fastest(self, speed: float, acc: float) -> float:
-        """Largest mean speed, m/s, on all of them: at most `speed` m/s and, by `acc` m/s2 across the way,
-        the root of acc over the curvature."""
-        least = float(np.sum(self.ways * np.maximum(1.0 / speed, np.sqrt(self.bends / acc))))
-        return float(np.sum(self.ways)) / least if least > 0.0 else speed
+from irlx.verifier.geometry.bends import Stretches
 
 
 @dataclass(frozen=True, eq=False)

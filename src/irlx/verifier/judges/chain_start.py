@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from irlx.promises import PATH_ORIENTATION, PATH_POSITION, PATH_STEP
 from irlx.streams.joint_stream import Floats
 from irlx.verifier.geometry.allowance import Allowance
-from irlx.verifier.geometry.chains import ChainWay, Leg
+from irlx.verifier.geometry.chain_parts import Leg
+from irlx.verifier.geometry.chains import ChainWay
 from irlx.verifier.geometry.curves import Curve, Pose
 from irlx.verifier.geometry.task_turns import turned_off
 
