@@ -25,6 +25,8 @@ WAY = lines(
 BLEND = 0.05
 """Half of the first line, so that it is left where a corner of `REACH` ends."""
 REACH = 0.05
+STEP = 0.05
+"""More than rows lie apart."""
 
 LOOSE = START + np.array(
     [[-0.02, 0.01, 0.03], [0.0, 0.008, 0.02], [0.02, 0.004, 0.008], [0.04, 0.001, 0.001]]
@@ -55,7 +57,7 @@ CORNERS = {
 @pytest.mark.parametrize("name", CORNERS)
 def test_the_first_row_may_lie_on_the_blend_already(name: str) -> None:
     ways = np.linspace(REACH + 0.004, 0.17, 12)
-    start = start_of_chain(rows(ways), legs(CORNERS[name]), START, REACH, EXACT, True)
+    start = start_of_chain(rows(ways), legs(CORNERS[name]), START, REACH, EXACT, True, STEP)
     assert start is not None
     assert (start.corner, start.placed, start.fresh) == (len(LOOSE), len(LOOSE), 2)
     assert start.ways.tolist() == [REACH, REACH]
@@ -63,7 +65,7 @@ def test_the_first_row_may_lie_on_the_blend_already(name: str) -> None:
 
 def test_a_row_on_the_first_leg_is_taken_though_the_corner_might_reach_farther() -> None:
     ways = np.array([0.047, 0.065, 0.08, 0.1, 0.12, 0.14])
-    start = start_of_chain(rows(ways), legs(TOLD), START, REACH, EXACT, False)
+    start = start_of_chain(rows(ways), legs(TOLD), START, REACH, EXACT, False, STEP)
     assert start is not None
     assert (start.corner, start.placed, start.fresh) == (len(LOOSE), len(LOOSE) + 1, 1)
     assert start.ways == pytest.approx([0.047, 0.047], abs=1e-9)
@@ -73,7 +75,7 @@ def test_a_row_off_the_way_and_out_of_reach_is_where_it_begins() -> None:
     """It cannot be hidden in the corner: what judges the way finds it off."""
     loose = np.vstack([LOOSE, START + np.array([0.04, 0.05, 0.0])])
     ways = np.linspace(REACH + 0.004, 0.17, 12)
-    start = start_of_chain(rows(ways, loose), legs(TOLD), START, REACH, EXACT, True)
+    start = start_of_chain(rows(ways, loose), legs(TOLD), START, REACH, EXACT, True, STEP)
     assert start is not None
     assert (start.corner, start.placed, start.fresh) == (len(LOOSE), len(LOOSE), 2)
 
@@ -81,10 +83,10 @@ def test_a_row_off_the_way_and_out_of_reach_is_where_it_begins() -> None:
 def test_rows_that_never_leave_the_corner_may_lie_on_the_way_in_the_end() -> None:
     """Of a way so small that all of it is within reach; and of one that was not run there are no rows."""
     ways, wide = np.array([0.09, 0.13, 0.17, 0.17]), 0.3
-    start = start_of_chain(rows(ways), legs(TOLD), START, wide, EXACT, True)
+    start = start_of_chain(rows(ways), legs(TOLD), START, wide, EXACT, True, STEP)
     assert start is not None
     assert start.corner == len(LOOSE)
-    none = start_of_chain(rows(ways[:0]), legs(TOLD), START, wide, EXACT, True)
+    none = start_of_chain(rows(ways[:0]), legs(TOLD), START, wide, EXACT, True, STEP)
     assert none is not None
     assert (none.corner, none.placed) == (len(LOOSE), len(LOOSE))
 
@@ -94,8 +96,8 @@ def test_it_waits_for_rows_that_tell() -> None:
     positions, attitudes = rows(ways)
     for seen in (3, len(LOOSE) + 2):
         first = positions[:seen], attitudes[:seen]
-        assert start_of_chain(first, legs(CORNERS["C_PASS"]), START, REACH, EXACT, False) is None
-    start = start_of_chain((positions, attitudes), legs(CORNERS["C_PASS"]), START, REACH, EXACT, False)
+        assert start_of_chain(first, legs(CORNERS["C_PASS"]), START, REACH, EXACT, False, STEP) is None
+    start = start_of_chain((positions, attitudes), legs(CORNERS["C_PASS"]), START, REACH, EXACT, False, STEP)
     assert start is not None
     assert start.corner == len(LOOSE)
 
@@ -114,9 +116,9 @@ def round_a_circle(ways: np.ndarray) -> tuple[ChainStart | None, int]:
     points = START + CIRCLE_RADIUS * np.hstack([np.sin(angles), 1.0 - np.cos(angles), 0.0 * angles])
     positions = np.concatenate([loose, points])
     rows = positions, np.tile(np.eye(3), (len(positions), 1, 1))
-    return start_of_chain(rows, (Leg(circle, Corner(0.0)),), START, 0.5 * circle.length, EXACT, True), len(
-        loose
-    )
+    return start_of_chain(
+        rows, (Leg(circle, Corner(0.0)),), START, 0.5 * circle.length, EXACT, True, STEP
+    ), len(loose)
 
 
 def test_rounds_of_a_circle_that_the_corner_takes_are_counted_from_its_end() -> None:

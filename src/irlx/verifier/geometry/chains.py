@@ -45,6 +45,10 @@ class ChainWay:
         """Way to the end of the leg that the rows have come to, m."""
         return self._parts.bases[self.leg] + self._parts.legs[self.leg].curve.length
 
+    def start_of(self, leg: int) -> float:
+        """Way to the start of a leg, m, endless where it is not known."""
+        return self._parts.bases[leg] if leg <= self._parts.known else np.inf
+
     @property
     def leg(self) -> int:
         """Number of the leg that the rows have come to."""
@@ -81,7 +85,10 @@ class ChainWay:
                 stop = min(stop, done + self._surely_before(part.leg, positions[done:stop]))
                 if stop == done:
                     break
-            found = self._run(placed, done, positions[:stop], rotations)
+            found, waits = self._run(placed, done, stop, (positions, rotations), final)
+            if waits:
+                done = found
+                break
             look = 2 * look if found == stop else FIRST_LOOK
             done = found
         return placed.first(done)
@@ -118,10 +125,11 @@ class ChainWay:
 
     # ---- Rows
 
-    def _run(self, placed: Placed, done: int, positions: Floats, rotations: Floats) -> int:
-        """Place rows from `done` on that lie on the part reached, and go on to the next one behind them."""
-        part = self._part
-        at, off, past = self._reachable.on(part, positions[done:])
+    def _run(self, placed: Placed, done: int, stop: int, rows: Pose, final: bool) -> tuple[int, bool]:
+        """Place rows from `done` up to `stop` that lie on the part reached, and go on to the next one behind
+        them; how many are placed, and whether more have to be given to go on."""
+        part, (positions, rotations) = self._part, rows
+        at, off, past = self._reachable.on(part, positions[done:stop])
         bad = past | ~(off <= PATH_POSITION)
         unsure = self._may_be_further(part, at) & (off > PATH_STEP) & ~bad
         stops = bad | unsure
@@ -129,15 +137,17 @@ class ChainWay:
         self._place(placed, done, part, at[:count], off[:count], rotations)
         done += count
         if count == len(bad):
-            return done
-        few = slice(done, min(done + FEW, len(positions)))
-        rest = positions[few], rotations[few]
+            return done, False
+        rest = positions[done : done + FEW], rotations[done : done + FEW]
+        # Whatever rows are given together, as many tell.
+        lacking = not final and len(rest[0]) < FEW and self._reachable.has_unseen
         if unsure[count]:
-            if not self._goes_further(rest, float(off[count]) - PATH_STEP):
+            goes = self._goes_further(rest, float(off[count]) - PATH_STEP, lacking)
+            if goes is False:
                 here = slice(count, count + 1)
                 self._place(placed, done, part, at[here], off[here], rotations)
                 done += 1
-            return done
+            return done, goes is None
         row = rest[0][:1]
         other = self._reachable.fitting(part, row)
         if other is not None and other.order > part.order:
@@ -148,13 +158,15 @@ class ChainWay:
             done += 1
         elif past[count]:
             self._part = self._parts.next(part) or part
+        elif lacking:
+            return done, True
         elif not self._goes_behind_unseen(rest, PATH_POSITION):
             # On no part at all: as far off this one as it says, with all rows that do not leave its stretch.
             left = np.flatnonzero(past[count:])
             lost = int(left[0]) if left.size else len(bad) - count
             self._place(placed, done, part, at[count : count + lost], off[count : count + lost], rotations)
             done += lost
-        return done
+        return done, False
 
     def _may_be_further(self, part: Part, at: Floats) -> NDArray[np.bool_]:
         """Which rows at places `at` (R,) of a part a tick may have brought to the next one."""
@@ -164,11 +176,15 @@ class ChainWay:
             return np.ones(len(at), dtype=np.bool_)
         return np.asarray(at > self._parts.bounds(part.leg)[1] - self._reach)
 
-    def _goes_further(self, rows: Pose, within: float) -> bool:
-        """Go on to a part further on that the first of rows lies within so many m of, if there is one."""
+    def _goes_further(self, rows: Pose, within: float, lacking: bool) -> bool | None:
+        """Go on to a part further on that the first of rows lies within so many m of, if there is one.
+
+        None where that is to be told by more rows, and they are `lacking`."""
         part = self._part
         other = self._reachable.fitting(part, rows[0][:1], within)
         if other is None and self._sought_from != part:
+            if lacking:
+                return None
             # Once on each part: where rows lie beside it all along, each of them would seek in vain.
             self._sought_from = part
             return self._goes_behind_unseen(rows, within)

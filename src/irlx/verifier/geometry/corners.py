@@ -72,7 +72,8 @@ def distance_taken(
 
     None where they do not tell yet, the next curve not being reached. The row before them is at `near`. Where
     any distance will do, the row furthest from both curves decides, and, where that leaves others off, what
-    fits all of them best.
+    fits all of them best. Where no row lies beside the curves, or no blend fits one that does, it is the
+    widest that leaves rows on the curves, if the way is the shorter for it.
     """
     first, second = legs
     most = asked_for.distance
@@ -85,9 +86,12 @@ def distance_taken(
     if not arrived.any() and not final:
         return None
     seen = int(np.argmax(arrived)) + 1 if arrived.any() else len(off)
-    between = np.where(away <= most, np.minimum(off, apart), 0.0)[:seen]
+    # A circle may come by the corner in earlier rounds.
+    earlier = (off <= PATH_POSITION) & (found.way < first.length - most - PATH_POSITION)
+    near_it = (away <= most) & ~earlier
+    between = np.where(near_it, np.minimum(off, apart), 0.0)[:seen]
     row = int(np.argmax(between))
-    about = np.flatnonzero(away[:seen] <= most)
+    about = np.flatnonzero(near_it[:seen])
     spread = about[np.linspace(0, len(about) - 1, min(ASKED, len(about))).astype(np.int64)]
     furthest = np.argsort(between)[::-1][:ASKED]
     asked = found.part(np.union1d(spread, furthest[between[furthest] > 0.0]))
@@ -96,15 +100,14 @@ def distance_taken(
             return most
         worst = [_worst(legs, way, asked, allowance) for way in (most, 0.0)]
         return most if worst[0] <= worst[1] else 0.0
+    distance = untold = _least_way(legs, min(most, float(np.min(_rooms(legs, found.part(np.arange(seen)))))))
     if between[row] > ON_A_LEG:
         distance = _fitting(legs, most, found.positions[row], asked, allowance)
-    else:
-        distance = min(most, float(np.min(away[:seen])))
     if len(about) and _worst(legs, distance, asked, allowance) > NEAR:
         distance = _best(lambda d: _worst(legs, d, asked, allowance), distance, most)
         if _worst(legs, distance, asked, allowance) > 1.0:
             distance = _fitting_first(
-                legs, most, found.part(np.flatnonzero(between > ON_A_LEG)), distance, allowance
+                legs, most, found.part(np.flatnonzero(between > ON_A_LEG)), untold, allowance
             )
     return distance if distance > PATH_STEP else 0.0
 
@@ -112,6 +115,27 @@ def distance_taken(
 def _apart(curve: Curve, positions: Floats, way: Floats) -> Floats:
     """Distances (R,) of positions from the places of a curve at ways (R,), or its ends."""
     return np.asarray(np.linalg.norm(positions - curve.points(np.clip(way, 0.0, curve.length)), axis=1))
+
+
+def _least_way(legs: tuple[Curve, Curve], room: float) -> float:
+    """Distance of the widest blend for which there is room, m; 0 where the way is no shorter for it, where
+    curves go on straight."""
+    distance = room - EXACT
+    if distance <= PATH_STEP or Blend(*legs, distance).length >= 2.0 * distance:
+        return 0.0
+    return distance
+
+
+def _rooms(legs: tuple[Curve, Curve], rows: _Rows) -> Floats:
+    """How far (R,) a blend may reach that leaves rows on the curves on which they lie, by the ways there: a
+    circle may come by the corner in other rounds. Endless for rows that lie on neither."""
+    first, second = legs
+    room = np.full(len(rows.way), np.inf)
+    for way in reversed(rounds(second, rows.there)[:2]):
+        room = np.where(_apart(second, rows.positions, way) <= PATH_POSITION, way, room)
+    # They come from the first one, and are on the second one where they have left that.
+    on_first = _apart(first, rows.positions, rows.way) <= PATH_POSITION
+    return np.asarray(np.where(on_first, first.length - rows.way, room))
 
 
 def _arrived(second: Curve, rows: _Rows, off: Floats, apart: Floats, final: bool) -> NDArray[np.bool_]:
@@ -151,9 +175,9 @@ def _fitting_first(
     while count:
         asked = rows.part(np.arange(count))
         # The first row may lie next to the first curve, and tell little.
-        best = _through(legs, most, asked.positions[count // 2], TANGENTS)
-        if _worst(legs, best, asked, allowance) <= NEAR:
-            return best
+        for distance in (otherwise, _through(legs, most, asked.positions[count // 2], TANGENTS)):
+            if _worst(legs, distance, asked, allowance) <= NEAR:
+                return distance
         count //= 2
     return otherwise
 

@@ -64,6 +64,12 @@ class Reachable:
             return before
         return None
 
+    @property
+    def has_unseen(self) -> bool:
+        """Whether corners that are not known are in reach."""
+        known = self.parts.known
+        return known < len(self.parts.legs) - 1 and self._is_in_reach(Part(known, False))
+
     def behind_unseen(self, rows: Pose, within: float) -> tuple[Part, ChainParts] | None:
         """The first part within so many m of the first of rows, behind corners of which no row before it
         tells: legs may be run within a tick. With it the parts, those corners being passed as rows fit best,
@@ -85,9 +91,12 @@ class Reachable:
         return self.parts.start(part) <= self.last.along + self.reach + PATH_POSITION
 
     def _settle(self, leg: int, rows: Pose) -> None:
-        """Let the first corner that is not known be passed as rows fit best."""
+        """Let the end of a leg be passed as rows fit best, if it is not known."""
         distance = self.distance_taken(leg, rows, True) if self.parts.is_open(leg) else None
-        self.parts.settle(self.parts.legs[leg].corner.distance if distance is None else distance)
+        if distance is None:
+            self.parts.settle_told(leg)
+        else:
+            self.parts.settle(distance)
 
     def _lies_on(self, part: Part, row: Floats, within: float) -> bool:
         if not part.blend and self.parts.is_open(part.leg):

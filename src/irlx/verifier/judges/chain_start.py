@@ -33,10 +33,17 @@ class ChainStart:
 
 
 def start_of_chain(
-    rows: Pose, legs: tuple[Leg, ...], start: Floats, reach: float, allowance: Allowance, final: bool
+    rows: Pose,
+    legs: tuple[Leg, ...],
+    start: Floats,
+    reach: float,
+    allowance: Allowance,
+    final: bool,
+    step: float,
 ) -> ChainStart | None:
     """Where rows (positions (R, 3), attitudes (R, ..)) come out of the corner at `start` (3,), from which it
-    reaches `reach` m; None where more rows have to tell. With `final` there are no more.
+    reaches `reach` m; None where more rows have to tell. With `final` there are no more. From one row to the
+    next the way leads on by `step` m at the most.
 
     They do where one lies on the first leg beyond the reach. Where the next blend begins there already no row
     may do so: then where one is farther away than the reach, those from the first one on that lie on the way.
@@ -50,7 +57,7 @@ def start_of_chain(
     first = _first_of(on & (way >= reach - PATH_STEP))
     away = _first_of(np.linalg.norm(positions - start, axis=1) > reach + PATH_POSITION)
     if away < first or (final and first == count):
-        found = _beside_first_leg(rows, legs, reach, allowance, away, final)
+        found = _beside_first_leg(rows, legs, reach, allowance, away, final, step)
         if found is None:
             return None
         if found < count and on[found]:
@@ -97,7 +104,13 @@ def _may_leave(legs: tuple[Leg, ...], way: float) -> bool:
 
 
 def _beside_first_leg(
-    rows: Pose, legs: tuple[Leg, ...], reach: float, allowance: Allowance, away: int, final: bool
+    rows: Pose,
+    legs: tuple[Leg, ...],
+    reach: float,
+    allowance: Allowance,
+    away: int,
+    final: bool,
+    step: float,
 ) -> int | None:
     """The first row from which on all up to the first one `away` from the corner lie on the way; where none
     does that one, which is off the way. None where more rows have to tell."""
@@ -105,7 +118,7 @@ def _beside_first_leg(
 
     def all_lie_from(row: int) -> bool:
         nonlocal waits
-        probe = ChainWay(list(legs), np.inf, allowance)
+        probe = ChainWay(list(legs), step, allowance)
         probe.begin_at(reach)
         placed = probe.take(rows[0][row:], rows[1][row:], final)
         waits = waits or len(placed.position) < seen - row

@@ -87,8 +87,8 @@ class ChainRows:
         self._chain, self._legs, self._tallies, self._dt = chain, legs, tallies, dt
         # Moves that are joined have none.
         self._allowance = chain[0].allowance
-        reach = REACH * float(np.max(legs.speed)) * dt
-        self._way = ChainWay(list(legs.legs), reach, self._allowance)
+        self._step = REACH * float(np.max(legs.speed)) * dt
+        self._way = ChainWay(list(legs.legs), self._step, self._allowance)
         start = chain[0].start.pose
         assert start is not None
         self._waiting = _Waiting(start)
@@ -139,7 +139,7 @@ class ChainRows:
         begun.add(poses, rows, block)
         taken, reach = (begun.positions[1:], begun.rotations[1:]), self._reaches[0]
         corner, legs = begun.positions[0], self._legs.legs
-        start = start_of_chain(taken, legs, corner, reach, self._allowance, final)
+        start = start_of_chain(taken, legs, corner, reach, self._allowance, final, self._step)
         if start is None:
             return (taken[0][:0], taken[1][:0]), rows[:0]
         self._begun = None
@@ -212,8 +212,8 @@ class ChainRows:
         free = self._legs.free_end
         if free is None:
             return len(placed.along)
-        last = self._legs.legs[-1].curve.length
-        beyond = (placed.leg == len(self._legs.legs) - 1) & (placed.along > self._way.length - last + free)
+        last = len(self._legs.legs) - 1
+        beyond = (placed.leg == last) & (placed.along > self._way.start_of(last) + free)
         return int(np.argmax(beyond)) if beyond.any() else len(beyond)
 
     def _judge(self, placed: Placed) -> None:
