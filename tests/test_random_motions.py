@@ -34,10 +34,8 @@ CORPUS = sorted((Path(__file__).parent / "corpus" / "motions").iterdir())
 
 
 def _case(folder: Path):
-    """A finding; one that is not mended yet says so in open.txt, and fails here when it is mended. What takes
-    long has a slow.txt that says what looks at it in every run."""
+    """A finding; one that is not mended yet says so in open.txt, and fails here when it is mended."""
     marks = [pytest.mark.xfail(strict=True)] if (folder / "open.txt").exists() else []
-    marks += [pytest.mark.slow] if (folder / "slow.txt").exists() else []
     return pytest.param(folder, id=folder.name, marks=marks)
 
 

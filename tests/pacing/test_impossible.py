@@ -167,3 +167,12 @@ def test_a_goal_is_met_only_in_place_and_in_turn(kit, monkeypatch, first) -> Non
     found = goal_shortfall(around(kit, kit.limits()), np.eye(3), np.zeros(3), kit.start, whole=True)
     assert (found.distance, found.angle) == (0.0, 0.0)
     assert len(list(approaches)) == 1
+
+
+def test_a_tick_whose_pose_is_met_is_not_said_to_miss_nothing(kit) -> None:
+    """Its search does not settle, which neither millimetres nor degrees tell."""
+    told = impossible._missing(Sizes(3e-10, 0.0, 0.0), None)
+    assert told.startswith("at this tick nothing is missing, but the search")
+    assert impossible._missing(Sizes(0.0, 2e-9, 0.0), None).startswith(
+        "at this tick 0 mm and 1.146e-07 deg are missing;"
+    )

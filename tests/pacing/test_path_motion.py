@@ -7,7 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from flat_criterion import Flat
 from irlx.blocks import LimitKind
+from irlx.diagnostics import IrlxError
 from irlx.motion.plan_path import PlannedPath
 from irlx.motion.trapezoid import Trapezoid
 from irlx.motion.whole_ticks import whole_ticks
@@ -17,12 +19,12 @@ from irlx.pacing.demand import Demand
 from irlx.pacing.path_motion import Failure, PacedPath, PathMotion, _walked, pace_path
 from irlx.pacing.posture_term import PostureTerm
 from irlx.pacing.slowdown.clock_bounds import Governor
-from irlx.pacing.slowdown.planned import Refusal
+from irlx.pacing.slowdown.planned import PlannedMotion, Refusal
 from irlx.pacing.walk import Walk, walk
 from irlx.transform.criteria.least_motion import LeastMotion
 from irlx.transform.qp.proxqp import ProxQpSolver
 from irlx.transform.step_bounds import StepLimiter
-from irlx.transform.tick import TickSolver
+from irlx.transform.tick import TickSolution, TickSolver, TickStatus
 from long_run import first, first_rows
 from machines import machine
 from slow_cases import SPEEDS, WAYS, slow_limits, used
@@ -202,3 +204,99 @@ def test_the_last_resort_is_a_walk_that_holds_its_criterion_back(monkeypatch, la
     assert ways.asked == ["first", "walk"]
     assert isinstance(chosen, PacedPath if all(last) else Failure)
     assert chosen is ways.found["first"] or chosen.iterations == 5
+
+
+def unsettled_motion(draws: bool = False) -> PathMotion:
+    """A motion beside whose path a criterion hardly grows: the steps of its first tick go to and fro."""
+    motion = motion_of("koch11", 0.1)
+    flat = Flat(np.random.default_rng(UNSETTLED).normal(size=(6, 11)))
+    return replace(motion, term=PostureTerm(lambda s, _: flat, draws))
+
+
+UNSETTLED = 34
+
+
+@pytest.mark.req("TRF-05")
+def test_a_criterion_that_ticks_do_not_settle_on_is_held_back_and_costs_no_time(monkeypatch) -> None:
+    """Bounds leave a way, so there is no reason to plan a slower motion."""
+    monkeypatch.setattr(path_motion, "plan_motion", lambda *_: pytest.fail("a plan is asked for"))
+    robot, motion = machine("koch11"), unsettled_motion()
+    solver, model = TickSolver(robot.kinematics, ProxQpSolver()), robot.model(robot.unlimited())
+    plain, _ = _walked(motion, model, solver, thorough=False)
+    assert plain.halt is not None
+    assert plain.halt.solution.status is TickStatus.NOT_CONVERGED
+    found = pace_path(motion, model, solver)
+    assert isinstance(found, PacedPath)
+    assert (len(found.q), found.slowings, found.planned) == (motion.plan.ticks, (), False)
+    poses = motion.plan.path.poses(found.demands.s)
+    for q, position, rotation in zip(found.q, poses.position, poses.rotation, strict=True):
+        reached = robot.kinematics.tool_pose(q)
+        np.testing.assert_allclose(reached[1], position, rtol=0.0, atol=1e-8)
+        np.testing.assert_allclose(reached[0], rotation, rtol=0.0, atol=1e-8)
+    # The rows are those of the term that is told, which a stopped run goes on with.
+    again, _ = _walked(replace(motion, term=found.term), model, solver, thorough=False)
+    np.testing.assert_array_equal(found.q, again.q)
+
+
+def test_what_draws_the_joints_is_planned_before_it_is_held_back(monkeypatch) -> None:
+    """Held back it would not draw them as far."""
+    asked = []
+    monkeypatch.setattr(path_motion, "plan_motion", lambda *_: asked.append("plan") or found)
+    monkeypatch.setattr(path_motion, "_planned", lambda *_: "planned")
+    found = object.__new__(PlannedMotion)
+    robot = machine("koch11")
+    solver = TickSolver(robot.kinematics, ProxQpSolver())
+    assert path_motion._paced(unsettled_motion(True), robot.model(robot.unlimited()), solver) == "planned"
+    assert asked == ["plan"]
+
+
+class HeldPlans:
+    """What becomes of a motion without a way whose plan ended at a tick of some status."""
+
+    def __init__(self, monkeypatch, status: TickStatus, plan: object, walks: bool) -> None:
+        nothing = np.empty((0, 7)), np.empty((0, 7), np.int8)
+        self.status, self.plan, self.asked = status, plan, list[str]()
+        self.walk = Walk(*nothing, (), 5, None if walks else "found"), None
+        monkeypatch.setattr(path_motion, "_paced", lambda *_: self.failure())
+        monkeypatch.setattr(path_motion, "_walked", lambda *_, **__: self.asked.append("walk") or self.walk)
+        monkeypatch.setattr(path_motion, "plan_motion", self._plan_motion)
+        monkeypatch.setattr(path_motion, "_planned", lambda *_: "planned")
+
+    def failure(self) -> Failure:
+        left = TickSolution(self.status, np.zeros(7), np.zeros(7, np.int8), np.zeros(6), 30)
+        return Failure(None, None, Refusal(0.1, solution=left))
+
+    def restraining(self) -> None:
+        return None
+
+    def _plan_motion(self, *_: object) -> object:
+        self.asked.append("plan")
+        if isinstance(self.plan, IrlxError):
+            raise self.plan
+        return self.plan
+
+
+def test_a_plan_that_does_not_settle_is_made_once_more_with_its_criterion_held_back(monkeypatch) -> None:
+    plan = object.__new__(PlannedMotion)
+    held = HeldPlans(monkeypatch, TickStatus.NOT_CONVERGED, plan, True)
+    assert pace_path(motion_of("arm7", 0.01), None, held) == "planned"
+    assert held.asked == ["plan"]
+
+
+@pytest.mark.parametrize("walks", [False, True])
+@pytest.mark.parametrize("plan", [Refusal(0.2), IrlxError([])], ids=["refused", "too long"])
+def test_where_that_plan_is_none_either_the_last_walk_decides(monkeypatch, plan, walks: bool) -> None:
+    """Its place is told: without its criterion held back the motion did not come as far."""
+    held = HeldPlans(monkeypatch, TickStatus.NOT_CONVERGED, plan, walks)
+    found = pace_path(motion_of("arm7", 0.01), None, held)
+    assert held.asked == ["plan", "walk"]
+    if walks:
+        assert found.iterations == 5
+    else:
+        assert found.refusal.s == (0.2 if isinstance(plan, Refusal) else 0.1)
+
+
+def test_bounds_that_leave_no_way_are_not_tried_with_less_of_the_criterion(monkeypatch) -> None:
+    held = HeldPlans(monkeypatch, TickStatus.NO_STEP, None, False)
+    assert isinstance(pace_path(motion_of("arm7", 0.01), None, held), Failure)
+    assert held.asked == ["walk"]

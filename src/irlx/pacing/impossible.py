@@ -214,10 +214,10 @@ def _missing(left: Sizes, goal: Nearest | None) -> str:
             "the target itself is out of reach: the nearest posture found within the limits leaves "
             f"{_millimetres(goal.distance)} and {_degrees(goal.angle)}"
         )
-    return (
-        f"at this tick {_millimetres(left.distance)} and {_degrees(left.angle)} are missing; "
-        "the target itself can be reached in some posture"
-    )
+    here = f"{_millimetres(left.distance)} and {_degrees(left.angle)} are missing"
+    if max(left.distance, left.angle) <= _NOISE:
+        here = "nothing is missing, but the search for the best posture does not settle"
+    return f"at this tick {here}; the target itself can be reached in some posture"
 
 
 def _millimetres(distance: float) -> str:

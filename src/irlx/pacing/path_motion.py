@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,8 +24,9 @@ from irlx.pacing.touching import touching
 from irlx.pacing.walk import Halt, Walk, walk
 from irlx.pacing.watch import Watch
 from irlx.transform.clearance import Closest
+from irlx.transform.precision import RESTRAINTS
 from irlx.transform.step_bounds import BoundSource, StepLimiter
-from irlx.transform.tick import TickSolver
+from irlx.transform.tick import TickSolver, TickStatus
 
 Array = NDArray[np.float64]
 
@@ -108,10 +110,33 @@ def _paced_or_otherwise(motion: PathMotion, model: Model, solver: TickSolver) ->
             return second
     if isinstance(found, Failure):
         # The path must not pay for a criterion on whose minimum the steps of a tick do not settle.
-        walked, broken = _walked(motion, model, solver.restraining(), thorough=True)
-        if walked.halt is None and broken is None:
-            return _as_walked(motion, walked)
+        return _held_back_or(found, motion, model, solver)
     return found
+
+
+def _held_back_or(
+    failure: Failure, motion: PathMotion, model: Model, solver: TickSolver
+) -> PacedPath | Failure:
+    """The motion planned with its criterion held back a little, or walked, as far as each tick asks."""
+    if _is_unsettled(failure.refusal):
+        held = _held_back(motion)
+        # Too many ticks for the caller are no reason against a walk, which has fewer.
+        with suppress(IrlxError):
+            plan = plan_motion(model, _task(held, None))
+            if not isinstance(plan, Refusal):
+                return _planned(held, model, plan)
+            failure = replace(failure, refusal=plan)
+    walked, broken = _walked(motion, model, solver.restraining(), thorough=True)
+    return _as_walked(motion, walked) if walked.halt is None and broken is None else failure
+
+
+def _held_back(motion: PathMotion) -> PathMotion:
+    return replace(motion, term=motion.term.held_back(RESTRAINTS[0]))
+
+
+def _is_unsettled(end: Halt | Refusal | None) -> bool:
+    """Whether a motion ended at a tick whose steps did not settle; bounds and margins left a way."""
+    return end is not None and end.solution is not None and end.solution.status is TickStatus.NOT_CONVERGED
 
 
 def _paced(motion: PathMotion, model: Model, solver: TickSolver) -> PacedPath | Failure:
@@ -125,6 +150,9 @@ def _paced(motion: PathMotion, model: Model, solver: TickSolver) -> PacedPath | 
     kept = walked.halt is None and broken is None
     if kept and not (motion.term.draws and _lags(walked.active)):
         return _as_walked(motion, walked)
+    at_once = _walked_held_back(motion, model, solver) if _is_unsettled(walked.halt) else None
+    if at_once is not None:
+        return at_once
     if motion.watch is not None:
         motion.watch.plans()
     try:
@@ -142,6 +170,18 @@ def _paced(motion: PathMotion, model: Model, solver: TickSolver) -> PacedPath | 
     if walked.halt is None and broken is None:
         return _as_walked(motion, walked)
     return Failure(walked.halt, broken, found)
+
+
+def _walked_held_back(motion: PathMotion, model: Model, solver: TickSolver) -> PacedPath | None:
+    """The walk with its criterion held back a little, if that does every tick: no reason to be slower.
+
+    Not where it draws the joints to a posture, from which that would keep them: a plan reaches it.
+    """
+    if motion.term.draws:
+        return None
+    held = _held_back(motion)
+    walked, broken = _walked(held, model, solver, thorough=False)
+    return _as_walked(held, walked) if walked.halt is None and broken is None else None
 
 
 def _glanced(motion: PathMotion, model: Model) -> PacedPath | Callable[[Array], Array] | None:

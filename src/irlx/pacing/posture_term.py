@@ -17,6 +17,7 @@ from irlx.transform.criteria.combined import Combined, Weighted
 from irlx.transform.criteria.criterion import Criterion
 from irlx.transform.criteria.least_motion import LeastMotion
 from irlx.transform.criteria.posture import Posture
+from irlx.transform.criteria.restrained import HeldBack
 from irlx.transform.qp.solver import QpSolver
 
 Array = NDArray[np.float64]
@@ -49,6 +50,11 @@ class PostureTerm:
             at=lambda s, advance: Combined(base(s, advance), terms, advance / law.speed),
             otherwise=otherwise,
         )
+
+    def held_back(self, restraint: float) -> PostureTerm:
+        """The same held back in every tick, see `irlx.transform.criteria.restrained`."""
+        base = self.at
+        return replace(self, at=lambda s, advance: HeldBack(base(s, advance), restraint), otherwise=None)
 
 
 @dataclass(frozen=True)

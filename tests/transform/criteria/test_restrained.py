@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from flat_criterion import Flat
 from irlx.transform.criteria.criterion import Criterion
 from irlx.transform.criteria.posture import Posture
-from irlx.transform.criteria.restrained import Restrained
+from irlx.transform.criteria.restrained import HeldBack, Restrained
 from irlx.transform.metric import times
 from irlx.transform.qp.proxqp import ProxQpSolver
 from irlx.transform.tick import TickSolver
@@ -40,6 +40,60 @@ def test_derivatives(kind: str) -> None:
         # What is held back is taken from nothing: without a step both agree, and the criterion is unchanged.
         assert held.value(q, np.zeros(5)) == criterion.value(q, np.zeros(5))
         np.testing.assert_array_equal(held.gradient(q, np.zeros(5)), criterion.gradient(q, np.zeros(5)))
+
+
+@pytest.mark.parametrize("kind", ["whole", "diagonal"])
+def test_held_back_a_criterion_is_restrained_once_its_tick_has_begun(kind: str) -> None:
+    rng = np.random.default_rng(5)
+    criterion, q, step = base(kind, rng), rng.normal(size=5), rng.normal(size=5)
+    held, known = HeldBack(Whole(criterion), 0.25), Restrained(criterion, 0.25)
+    assert held.name == known.name == criterion.name
+    assert held.value(q, step) == known.value(q, step)
+    np.testing.assert_array_equal(held.gradient(q, step), known.gradient(q, step))
+    np.testing.assert_array_equal(held.begun(q).hessian(), known.hessian())
+    np.testing.assert_array_equal(held.begun(q).pull(q, step), known.pull(q, step))
+    with pytest.raises(TypeError):
+        held.hessian()
+
+
+def test_what_asks_for_less_is_held_back_all_the_same() -> None:
+    """What a criterion adds is cut off by plans before the restraint is added, which never asks for more."""
+    rng = np.random.default_rng(6)
+    criterion, q, step = Flat(rng.normal(size=(3, 5))), rng.normal(size=5), rng.normal(size=5)
+    less = Restrained(Asking(criterion, 4.0), 0.5).asking_at_most(1.0)
+    np.testing.assert_allclose(
+        less.gradient(q, step), Restrained(criterion, 0.5).gradient(q, step), rtol=1e-12
+    )
+    held = Restrained(criterion, 0.5)
+    assert held.asking_at_most(1.0) is held
+
+
+class Whole(Criterion):
+    """A criterion that is known once its tick has begun."""
+
+    def __init__(self, criterion: Criterion) -> None:
+        self._criterion, self.name = criterion, criterion.name
+
+    def begun(self, q: np.ndarray) -> Criterion:
+        return self._criterion
+
+    def value(self, q: np.ndarray, step: np.ndarray) -> float:
+        raise AssertionError("not begun")
+
+    gradient = value
+
+    def hessian(self) -> np.ndarray:
+        raise AssertionError("not begun")
+
+
+class Asking(Flat):
+    """A criterion that asks for a multiple of another's, unless it is told to ask for less."""
+
+    def __init__(self, criterion: Criterion, times: float) -> None:
+        self._less, self._hessian = criterion, times * criterion.hessian()
+
+    def asking_at_most(self, size: float) -> Criterion:
+        return self._less
 
 
 @pytest.mark.req("TRF-05")
