@@ -100,15 +100,17 @@ def distance_taken(
             return most
         worst = [_worst(legs, way, asked, allowance) for way in (most, 0.0)]
         return most if worst[0] <= worst[1] else 0.0
-    distance = untold = _least_way(legs, min(most, float(np.min(_rooms(legs, found.part(np.arange(seen)))))))
+    seen_rows = found.part(np.arange(seen))
     if between[row] > ON_A_LEG:
         distance = _fitting(legs, most, found.positions[row], asked, allowance)
+    else:
+        distance = _least_way(legs, most, seen_rows)
     if len(about) and _worst(legs, distance, asked, allowance) > NEAR:
         distance = _best(lambda d: _worst(legs, d, asked, allowance), distance, most)
         if _worst(legs, distance, asked, allowance) > 1.0:
-            distance = _fitting_first(
-                legs, most, found.part(np.flatnonzero(between > ON_A_LEG)), untold, allowance
-            )
+            untold = _least_way(legs, most, seen_rows)
+            beside = found.part(np.flatnonzero(between > ON_A_LEG))
+            distance = _fitting_first(legs, most, beside, untold, allowance)
     return distance if distance > PATH_STEP else 0.0
 
 
@@ -117,10 +119,10 @@ def _apart(curve: Curve, positions: Floats, way: Floats) -> Floats:
     return np.asarray(np.linalg.norm(positions - curve.points(np.clip(way, 0.0, curve.length)), axis=1))
 
 
-def _least_way(legs: tuple[Curve, Curve], room: float) -> float:
-    """Distance of the widest blend for which there is room, m; 0 where the way is no shorter for it, where
-    curves go on straight."""
-    distance = room - EXACT
+def _least_way(legs: tuple[Curve, Curve], most: float, rows: _Rows) -> float:
+    """Distance of the widest blend, of `most` m, for which rows leave room; 0 where the way is no shorter for
+    it, where curves go on straight."""
+    distance = min(most, float(np.min(_rooms(legs, rows)))) - EXACT
     if distance <= PATH_STEP or Blend(*legs, distance).length >= 2.0 * distance:
         return 0.0
     return distance

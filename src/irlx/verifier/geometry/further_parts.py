@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -23,8 +22,7 @@ class Reached(NamedTuple):
     along: float
 
 
-@dataclass(frozen=True, eq=False)
-class Reachable:
+class Reachable(NamedTuple):
     """The parts of a chain as seen from the last row, and how far from there the next one may lie at most:
     `reach` m. `allowance`: turns that the tool may stand off by."""
 
@@ -75,7 +73,7 @@ class Reachable:
         tells: legs may be run within a tick. With it the parts, those corners being passed as rows fit best,
         if any do, else as widely as may be."""
         trial, row = self.parts.copy(), rows[0][:1]
-        tried = replace(self, parts=trial)
+        tried = self._replace(parts=trial)
         for leg in range(trial.known, len(trial.legs) - 1):
             if not tried._is_in_reach(Part(leg, False)):
                 break
