@@ -11,7 +11,7 @@ from irlx.diagnostics import IrlxError, report
 
 def check_number(option: str, given: Any, cause: str, fits: Callable[[Any], bool]) -> None:
     """Raises IrlxError, IRL006 with what it should be, for what is no number or does not fit; None passes."""
-    if given is not None and not (_is(Real, given) and fits(given)):
+    if given is not None and not (_is(Real, given) and _is_of_floats(given) and fits(given)):
         raise _refused(option, given, cause)
 
 
@@ -30,6 +30,15 @@ def check_kind(option: str, given: object, kinds: tuple[type, ...], cause: str) 
 def _is(kind: type, given: object) -> bool:
     """Whether a value is a number of a kind; truth values are none."""
     return isinstance(given, kind) and not isinstance(given, bool)
+
+
+def _is_of_floats(given: Any) -> bool:
+    """Whether a number is not beyond all floats, as whole ones and fractions may be."""
+    try:
+        float(given)
+    except OverflowError:
+        return False
+    return True
 
 
 def _refused(option: str, given: Any, cause: str) -> IrlxError:

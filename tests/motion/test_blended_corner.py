@@ -7,10 +7,14 @@ import pytest
 from scipy.interpolate import PPoly
 from scipy.spatial.transform import Rotation
 
+from irlx.blocks import MotionLaw
 from irlx.motion.arc import Arc, Circle
 from irlx.motion.blended_corner import _flattest, blended_corner
+from irlx.motion.fastest_law import fastest_trapezoids
 from irlx.motion.hermite import Jet, quintic
 from irlx.motion.line import Line
+from irlx.motion.polynomial_curve import PolynomialCurve
+from irlx.motion.sections import bounds_of
 from irlx.motion.turn import Turn
 
 pytestmark = pytest.mark.req("MOT-06")
@@ -139,3 +143,40 @@ def test_no_section_bends_more_than_it_says_and_narrow_bends_have_narrow_ones(se
         slow = said > 0.25 * said.max()
         assert len(said) > 16
         assert np.sum(path.shape.lengths[slow]) * said.max() < 40.0
+
+
+LAW = MotionLaw(speed=0.3, acc=2.0, speed_ori=3.0, acc_ori=10.0)
+CUSP = 21, 0.052150377871959995
+"""Seed of `circles_of`, and the distance at which their blend has a cusp, to rounding."""
+
+
+@pytest.mark.req("MOT-03")
+def test_blends_near_a_cusp_and_on_it_are_measured_and_timed_alike() -> None:
+    """The way through the bend against chords that grow with the distance from it; one that is 1e-6 of the
+    distance off still has the time of a cusp, in which the tool all but stands."""
+    before, after = circles_of(CUSP[0])
+    times = []
+    for off in (0.0, 1e-8, 1e-6):
+        path = blended_corner(before, after, CUSP[1] * (1.0 - off)).path
+        shape, curve = path.shape, path.curve
+        narrowest = int(np.argmax(shape.curvature))
+        cusp = path.cuts[narrowest : narrowest + 2].mean()
+        u = cusp + 10.0 ** np.linspace(-7.0, -1.0, 801)
+        steps = np.diff(curve.length_at(u))
+        chords = np.linalg.norm(np.diff(curve.points(u), axis=0), axis=1)
+        np.testing.assert_allclose(steps, chords, rtol=1e-3, atol=1e-15)
+        assert len(shape.lengths) < 150
+        assert np.all(shape.lengths > 1e-13)
+        law = fastest_trapezoids(bounds_of(shape, LAW), path.length)
+        times.append(law.duration)
+        assert law.rates_at(curve.length_at(np.array([cusp])))[0] < 2e-6
+    assert times == pytest.approx([times[0]] * len(times), rel=2e-3)
+
+
+def test_the_curvature_of_a_cusp_is_that_of_a_point() -> None:
+    """(u^2, u^3) stands still at 0; behind it the curvature is 6 / (4 + 9 u^2)^1.5 / u."""
+    coefficients = np.array([[[0.0, 1.0, 0.0]], [[1.0, 0.0, 0.0]], [[0.0] * 3], [[0.0] * 3]])
+    curve = PolynomialCurve(np.array([0.0, 1.0]), coefficients)
+    u = np.array([0.0, 1e-14, 1e-9, 0.01, 0.5])
+    expected = [1e12, 1e12, *(6.0 / (4.0 + 9.0 * u[2:] ** 2) ** 1.5 / u[2:])]
+    np.testing.assert_allclose(curve.curvature(u), expected, rtol=1e-9)

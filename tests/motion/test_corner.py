@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from irlx.blocks import Blend, MoveKind
 from irlx.motion.blended_corner import blended_corner
-from irlx.motion.corner import Corner, _speed, corner_between
+from irlx.motion.corner import LEAST_PASS, Corner, Lost, _speed, corner_between
 from irlx.motion.edges import edges_of
 
 pytestmark = pytest.mark.req("MOT-06")
@@ -52,6 +52,35 @@ def test_a_blend_behind_a_spline_takes_half_of_its_last_piece(kit) -> None:
     via = int(np.argmin(np.linalg.norm(fine - points[0], axis=1)))
     assert edge.room == pytest.approx((0.5 * np.sum(steps[:via]), 0.5 * np.sum(steps[via:])), rel=2e-3)
     assert edge.marks == pytest.approx((np.sum(steps[:via]), edge.path.length), rel=2e-3)
+
+
+def rounds(kit, turns: float, blend: Blend):
+    """A circle of 30 mm that is run twice, so many turns each time, as edges."""
+    law = kit.law(speed=0.1)
+    block = kit.circle((0.03, 0.03, 0.0), (0.06, 0.0, 0.0), law, angle=2.0 * np.pi * turns)
+    (before,) = edges_of(kit.leg(block, blend), 0, np.eye(3), np.zeros(3))
+    (after,) = edges_of(kit.leg(block), 1, before.path.end_rotation, before.path.end_position)
+    return before, after
+
+
+@pytest.mark.parametrize("turns", [1.0, -1.0, 2.0, 1.0 + 1e-9])
+def test_half_a_round_on_both_sides_of_a_corner_leads_back_to_where_it_begins(kit, turns: float) -> None:
+    """No curve leads there: the move stops. Less of it is a blend, and C_PASS takes the least."""
+    lost = corner_between(*rounds(kit, turns, Blend(1.0)))
+    assert isinstance(lost, Lost)
+    assert "lead back to where they begin" in lost.reason
+    for blend, distance in ((Blend(0.04), 0.04), (Blend(), LEAST_PASS)):
+        found = corner_between(*rounds(kit, turns, blend))
+        assert isinstance(found, Corner)
+        assert found.distance == distance
+        assert found.blend.miss < 0.06
+
+
+def test_half_a_round_and_a_hair_are_blended(kit) -> None:
+    """The ends of the blend are 1e-7 m apart."""
+    found = corner_between(*rounds(kit, 1.0 + 1e-7 / (2.0 * np.pi * 0.03), Blend(1.0)))
+    assert isinstance(found, Corner)
+    assert found.blend.path.length == pytest.approx(1e-7, rel=1e-6)
 
 
 @pytest.mark.parametrize(

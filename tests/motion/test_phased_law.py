@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import product
 
 import numpy as np
 import pytest
@@ -35,6 +36,21 @@ def sections(rng: np.random.Generator, count: int) -> Sections:
 def planned(kind: str, seed: int, count: int) -> tuple[PhasedLaw, Sections]:
     bounds = sections(np.random.default_rng(seed), count)
     return LAWS[kind](bounds, float(np.sum(bounds.lengths))), bounds
+
+
+@pytest.mark.parametrize("fastest", [fastest_trapezoids, fastest_s_curves])
+def test_a_section_without_length_bounds_the_rate_in_its_place(fastest) -> None:
+    """First, last, or between two others; a short one counts as one of no length."""
+    for number, varying in product(range(3), (True, False)):
+        times = []
+        for length in (0.0, 1e-12):
+            lengths, speed = np.full(3, 0.2), np.full(3, 0.5)
+            lengths[number], speed[number] = length, 0.1
+            bounds = Sections(lengths, speed, np.full(3, 2.0), np.full(3, 40.0), np.full(3, varying))
+            law = fastest(bounds, float(np.sum(lengths)))
+            times.append(law.duration)
+            assert law.rates_at(np.array([0.2]))[0] == pytest.approx(0.1 if number == 1 else 0.5)
+        assert times[0] == pytest.approx(times[1], rel=1e-4)
 
 
 @pytest.mark.parametrize("count", [1, 2, 9, 60])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import pi, sqrt
+from math import inf, pi, sqrt
 
 import numpy as np
 
@@ -16,6 +16,10 @@ REVERSAL = 0.01
 
 LEAST_BLEND = 1e-6
 """Shortest distance of a blend, m: curves much smaller would be made of the rounding of their points."""
+
+NEAREST_ENDS = REVERSAL * LEAST_BLEND
+"""Ends of a blend nearer to each other, m, are one point, as on a circle that is run twice: nothing but the
+rounding of both would tell what leads from the one to the other."""
 
 LEAST_PASS = 1e-4
 """Shortest distance of a blend by C_PASS, m."""
@@ -60,6 +64,8 @@ def corner_between(before: Edge, after: Edge) -> Corner | Lost:
         distance = min(max(_least_distance(before, after, room), LEAST_PASS), room)
     if distance < LEAST_BLEND:
         return Lost(f"{distance * 1000.0:.3g} mm beside the corner are next to nothing")
+    if _closes(before, after, distance):
+        return Lost(f"{distance * 1000.0:.6g} mm beside the corner lead back to where they begin")
     blend = blended_corner(before.path, after.path, distance)
     return Corner(blend, distance, asked.distance is not None and asked.distance > room)
 
@@ -79,6 +85,13 @@ def _hindrance(before: Edge, after: Edge) -> str:
     return "the path turns back on itself" if angle > pi - REVERSAL else ""
 
 
+def _closes(before: Edge, after: Edge, distance: float) -> bool:
+    """Whether a blend would end where it begins."""
+    left = before.path.poses(np.array([before.path.length - distance])).position[0]
+    joined = after.path.poses(np.array([distance])).position[0]
+    return bool(np.linalg.norm(joined - left) < NEAREST_ENDS)
+
+
 def _least_distance(before: Edge, after: Edge, room: float) -> float:
     """Smallest distance at which a blend keeps the speed that both neighbours have, at most `room`.
 
@@ -88,6 +101,8 @@ def _least_distance(before: Edge, after: Edge, room: float) -> float:
     speeds = _speed(before), _speed(after)
 
     def excess(inverse: float) -> float:
+        if _closes(before, after, 1.0 / inverse):
+            return inf
         blend = blended_corner(before.path, after.path, 1.0 / inverse)
         return _strain(blend, (before, after), speeds) - 1.0
 
@@ -95,12 +110,12 @@ def _least_distance(before: Edge, after: Edge, room: float) -> float:
         return room
     least, most = 1.0 / room, 1.0 / LEAST_PASS
     at_room = excess(least)
-    if at_room >= 0.0:
-        return room
     if isinstance(before.path, Line) and isinstance(after.path, Line):
-        return room * (1.0 + at_room)
+        return room * (1.0 + min(at_room, 0.0))
     if excess(most) <= 0.0:
         return LEAST_PASS
+    if at_room >= 0.0:
+        return room
     from scipy.optimize import brentq
 
     return min((1.0 + _ENOUGH) / float(brentq(excess, least, most, rtol=_ENOUGH)), room)

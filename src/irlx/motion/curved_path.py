@@ -59,7 +59,7 @@ class CurvedPath:
             for values in self.turns.rates(s)
         )
         varying = np.ones(len(low), dtype=np.bool_)
-        return Shape(np.diff(ends), curvature, turn_rate, turn_bend, varying)
+        return Shape(np.maximum(np.diff(ends), 0.0), curvature, turn_rate, turn_bend, varying)
 
     @property
     def turn_rate(self) -> float:

@@ -29,6 +29,8 @@ def fastest_trapezoids(sections: Sections, length: float) -> PhasedLaw:
     steadily = sections.steadily
     for i, (way, fastest, bound) in enumerate(zip(lengths, speed, acc, strict=True)):
         first, last = square[i], square[i + 1]
+        if way == 0.0:
+            continue
         if steadily[i] and max(first, last) > 0.0:
             rates = (sqrt(first), sqrt(last))
             phases.add(2.0 * way / (rates[0] + rates[1]), way, rates[1], bound, (last - first) / (2.0 * way))

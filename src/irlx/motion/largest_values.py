@@ -17,8 +17,9 @@ _ROUGH, _EXACT, _NOTHING = 0.02, 2e-5, 1e-9
 """Where more than `_ROUGH` of the largest value may lie between samples of a section it is looked at again
 between each two of them; where its largest value may lie, from `_EXACT` on. `_NOTHING`, and so much of the
 largest of all sections, is rounding."""
-_FINER = 12
-"""So many times at most: a peak of 1e-8 of a section is seen."""
+_FINER, _FINEST = 12, 1e-10
+"""So many times at most, a peak of 1e-8 of a section is seen; none that is narrower than this part of the
+parameters themselves: there a curve, too, is rounding."""
 
 
 class Seen(NamedTuple):
@@ -54,11 +55,13 @@ def largest_values(values_at: Callable[[Array], Array], low: Array, high: Array)
     seen = seen_in(values_at(samples.ravel()).reshape(samples.shape))
     found, best = seen.most, seen.largest.copy()
     nothing = _NOTHING * found.max(initial=1.0)
+    finest = _FINEST * max(np.max(np.abs(low), initial=0.0), np.max(np.abs(high), initial=0.0))
     # Of sections that are looked at again: which of the given ones they are parts of.
     section = np.arange(len(low))
     for _ in range(_FINER):
         may_hold_it = seen.most >= best[section]
         rough = seen.between > np.where(may_hold_it, _EXACT, _ROUGH) * seen.largest + nothing
+        rough &= samples[:, -1] - samples[:, 0] > finest
         if not np.any(rough):
             break
         section = np.repeat(section[rough], SAMPLES - 1)

@@ -20,8 +20,12 @@ _NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
 _PANELS = 8
 _MOST_PANELS = 512
 _SAME_LENGTH = 1e-14
+_MOST_HALVINGS = 60
 _MOST_STEPS = 50
 _LAST_STEP = 1e-9
+
+POINT = 1e-12
+"""What is smaller, m, is a point: all but a stop where a curve turns in it, and not far from rounding."""
 
 
 @dataclass(frozen=True)
@@ -82,8 +86,9 @@ class PolynomialCurve:
         return np.asarray(tangent), np.asarray(across / speed**2)
 
     def curvature(self, u: Array) -> Array:
-        """Curvature (N,), 1/m, at the parameters u (N,)."""
-        return np.asarray(np.linalg.norm(self.along(u)[1], axis=1))
+        """Curvature (N,), 1/m, at the parameters u (N,); at most that of a circle as small as `POINT`."""
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            return np.asarray(np.fmin(np.linalg.norm(self.along(u)[1], axis=1), 1.0 / POINT))
 
     @cached_property
     def _table(self) -> tuple[Array, Array]:
@@ -95,12 +100,26 @@ class PolynomialCurve:
             if abs(finer[1][-1] - table[1][-1]) <= _SAME_LENGTH * finer[1][-1]:
                 return table
             panels, table = 2 * panels, finer
-        return table
+        return self._halved(table[0])
+
+    def _halved(self, knots: Array) -> tuple[Array, Array]:
+        """The table of knots with more between them beside bends so narrow that even panels do not do."""
+        for _ in range(_MOST_HALVINGS):
+            middles = 0.5 * (knots[:-1] + knots[1:])
+            whole, first = self._way(knots[:-1], knots[1:]), self._way(knots[:-1], middles)
+            halves = first + self._way(middles, knots[1:])
+            off = np.abs(halves - whole) > 0.1 * _SAME_LENGTH * np.sum(halves)
+            if not np.any(off):
+                break
+            knots = np.sort(np.concatenate([knots, middles[off]]))
+        return self._table_of(knots)
 
     def _lengths(self, panels: int) -> tuple[Array, Array]:
         steps = np.linspace(0.0, 1.0, panels + 1)[:-1]
         knots = (self.breaks[:-1, None] + np.diff(self.breaks)[:, None] * steps).ravel()
-        knots = np.append(knots, self.breaks[-1])
+        return self._table_of(np.append(knots, self.breaks[-1]))
+
+    def _table_of(self, knots: Array) -> tuple[Array, Array]:
         return knots, np.concatenate([[0.0], np.cumsum(self._way(knots[:-1], knots[1:]))])
 
     def _way(self, first: Array, last: Array) -> Array:

@@ -21,7 +21,9 @@ def rising(first: float, last: float, acc: float, jerk: float) -> tuple[float, f
 
 
 def reach(first: float, way: float, acc: float, jerk: float) -> float:
-    """Largest rate that can be reached from the rate `first` over a way (> 0)."""
+    """Largest rate that can be reached from the rate `first` over a way."""
+    if way == 0.0:
+        return first
     return _kept(_reach(first, way, acc, jerk), first, lambda last: rising(first, last, acc, jerk)[1] <= way)
 
 
