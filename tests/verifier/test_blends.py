@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import quad
 
 from irlx.blocks import ArcCourse, PoseTarget
-from irlx.verifier.geometry.arcs import arc_shape
+from irlx.verifier.geometry.arcs import ArcShape, arc_shape
 from irlx.verifier.geometry.blends import Blend
 from irlx.verifier.geometry.curves import ArcCurve, LineCurve
 
@@ -50,3 +50,22 @@ def test_rows_beyond_its_ends_lie_at_them(hairpin: Blend) -> None:
     outward = ends - inner
     beyond = np.add(ends, 1e-5 * outward / np.linalg.norm(outward, axis=1)[:, None])
     assert hairpin.nearest(beyond) == pytest.approx([0.0, 1.0], abs=1e-12)
+
+
+def circle(start: np.ndarray, heading: float, radius: float, travel: float) -> ArcCurve:
+    """To the left of a heading, rad, in the plane."""
+    forward, inward = np.array(
+        [[np.cos(heading), np.sin(heading), 0.0], [-np.sin(heading), np.cos(heading), 0.0]]
+    )
+    shape = ArcShape(start, forward, inward, 1.0 / radius, 2.0, travel)
+    still = np.eye(3)
+    return ArcCurve(shape, ArcCourse(PoseTarget((0.0, 0.0, 0.0), None), angle=travel), (still, still, still))
+
+
+def test_places_of_a_join_that_crosses_itself_near_its_end_are_found_again() -> None:
+    """Of some the nearest sample is the end, which they lie behind."""
+    first = circle(np.zeros(3), 0.0, 0.041456804, 5.8421997)
+    second = circle(first.points(np.array([first.length]))[0], 5.8421997 - 0.3398037, 0.0364748, 8.0)
+    join = Blend(first, second, 0.5 * first.length)
+    u = np.linspace(0.0, 1.0, 1201)
+    assert join.nearest(join.points(u)) == pytest.approx(u, abs=1e-9)

@@ -82,7 +82,7 @@ def path_grid(path: PosePath, law: TimeLaw, spacing: Spacing = FINE) -> PathGrid
     """
     step = spacing.factor * float(np.clip(STEP * law.duration / LONG_MOTION * 4.0, STEP, LONG_STEP))
     width = min(max(law.speed * step, path.length / MOST_INTERVALS), path.length / spacing.least)
-    corners = _apart(law.corners, _NEAREST_CORNERS * width)
+    corners = _apart(law, _NEAREST_CORNERS * width)
     pieces = [
         np.linspace(start, end, max(1, int(np.ceil((end - start) / width - 1e-9))) + 1)[1:]
         for start, end in pairwise(corners)
@@ -105,10 +105,21 @@ def acc_between(law: TimeLaw, s: Array) -> Array:
     return acc
 
 
-def _apart(corners: tuple[float, ...], least: float) -> list[float]:
-    """The corners without inner ones that lie within `least` of the one before or of the end."""
-    kept = [corners[0]]
-    for corner in corners[1:-1]:
-        if corner - kept[-1] > least and corners[-1] - corner > least:
+def _apart(law: TimeLaw, least: float) -> list[float]:
+    """The corners of a law without inner ones that lie within `least` of the one before or of the end.
+
+    Of those that are one the slowest stays: in a narrow bend that is where the tool must be slow.
+    """
+    corners, rates = law.corners, law.rates_at(np.array(law.corners)).tolist()
+    kept, lowest = [corners[0]], 0.0
+    for corner, rate in zip(corners[1:-1], rates[1:-1], strict=True):
+        if corners[-1] - corner <= least:
+            break
+        if corner - kept[-1] > least:
             kept.append(corner)
+        elif rate < lowest:
+            kept[-1] = corner
+        else:
+            continue
+        lowest = rate
     return [*kept, corners[-1]]

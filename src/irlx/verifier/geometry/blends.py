@@ -65,9 +65,10 @@ class Blend:
         cells = np.diff(samples)
         widths = np.maximum(np.append(cells, 0.0), np.insert(cells, 0, 0.0))[nearest]
         found = nearest_parameters(self._jet_at, positions, samples[nearest], widths, 1.0)
-        # In a narrow bend the nearest sample may be one of the other side.
+        # In a narrow bend the nearest sample may be one of the other side, or where the join crosses itself.
         off = np.linalg.norm(positions - self.points(found), axis=1)
-        unsure = np.flatnonzero((off > ON_IT) & ~self._beyond(positions, found))
+        elsewhere = self._beyond(positions, found) & (off > 0.5 * np.max(np.diff(self._lengths)))
+        unsure = np.flatnonzero((off > ON_IT) & ~elsewhere)
         if unsure.size:
             least = np.sqrt(np.minimum(apart[unsure, :-1], apart[unsure, 1:])) - 0.5 * np.diff(self._lengths)
             rows, there = np.nonzero(least < off[unsure, None])
@@ -75,7 +76,10 @@ class Blend:
         return found
 
     def _beyond(self, positions: Floats, u: Floats) -> NDArray[np.bool_]:
-        """Which positions (R, 3), nearest to its points at u (R,), lie before its start or behind its end."""
+        """Which positions (R, 3), nearest to its points at u (R,), lie before its start or behind its end.
+
+        They may still be near another of its points, but for those that no sample is near.
+        """
         before = (positions - self._control[0]) @ self._rate[0] < 0.0
         return np.asarray(((u <= 0.0) & before) | ((u >= 1.0) & (self.behind(positions) > 0.0)))
 
