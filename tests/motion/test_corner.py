@@ -54,6 +54,26 @@ def test_a_blend_behind_a_spline_takes_half_of_its_last_piece(kit) -> None:
     assert edge.marks == pytest.approx((np.sum(steps[:via]), edge.path.length), rel=2e-3)
 
 
+@pytest.mark.parametrize("line_first", [True, False])
+@pytest.mark.parametrize("speed", [0.2, 0.3])
+def test_c_pass_beside_a_circle_keeps_the_speed_and_no_more(kit, line_first: bool, speed: float) -> None:
+    """Of what bends there a part is that of the circle, however far the blend reaches."""
+    law = kit.law(speed=speed)
+    points = [(0.4, 0.0, 0.0), (0.4, 0.1, 0.1), (0.4, 0.0, 0.2)]
+    if line_first:
+        blocks = [kit.block(points[0], law=law), kit.circle(points[1], points[2], law)]
+    else:
+        blocks = [kit.circle((0.1, 0.0, 0.1), points[0], law), kit.block((0.6, 0.5, 0.0), law=law)]
+    (before,) = edges_of(kit.leg(blocks[0], Blend()), 0, np.eye(3), np.zeros(3))
+    (after,) = edges_of(kit.leg(blocks[1]), 1, before.path.end_rotation, before.path.end_position)
+    corner = corner_between(before, after)
+    assert isinstance(corner, Corner)
+    assert LEAST_PASS < corner.distance < 0.9 * min(before.room[1], after.room[0])
+    assert bent(corner.blend.path, law, speed) == pytest.approx(1.0, abs=0.03)
+    closer = blended_corner(before.path, after.path, 0.9 * corner.distance)
+    assert bent(closer.path, law, speed) > 1.04
+
+
 def rounds(kit, turns: float, blend: Blend):
     """A circle of 30 mm that is run twice, so many turns each time, as edges."""
     law = kit.law(speed=0.1)
