@@ -96,6 +96,28 @@ def test_half_a_round_on_both_sides_of_a_corner_leads_back_to_where_it_begins(ki
         assert found.blend.miss < 0.06
 
 
+@pytest.mark.parametrize("blend", [Blend(1.0), Blend()])
+def test_circles_that_meet_half_way_before_and_behind_a_corner_stop_there(kit, blend: Blend) -> None:
+    """Each the other one's mirror image, with a corner of 66 degrees where they meet once more."""
+    radius, half = 0.05, 1.0
+    inner, outer = (radius * np.array([-np.sin(half), sign * np.cos(half), 0.0]) for sign in (1.0, -1.0))
+
+    def on(centre: np.ndarray, angle: float) -> np.ndarray:
+        turn = Rotation.from_rotvec([0.0, 0.0, angle])
+        return centre - turn.apply(centre)
+
+    law = kit.law(speed=0.5)
+    start, via = on(inner, -4.0 * half), on(inner, -2.0 * half)
+    first = kit.circle(via, np.zeros(3), law)
+    second = kit.circle(on(outer, 2.0 * half), on(outer, 4.0 * half), law)
+    (before,) = edges_of(kit.leg(first, blend), 0, np.eye(3), start)
+    (after,) = edges_of(kit.leg(second), 1, np.eye(3), before.path.end_position)
+    assert before.room[1] == pytest.approx(2.0 * half * radius)
+    lost = corner_between(before, after)
+    assert isinstance(lost, Lost)
+    assert lost.reason == "100 mm beside the corner lead back to where they begin"
+
+
 def test_half_a_round_and_a_hair_are_blended(kit) -> None:
     """The ends of the blend are 1e-7 m apart."""
     found = corner_between(*rounds(kit, 1.0 + 1e-7 / (2.0 * np.pi * 0.03), Blend(1.0)))
