@@ -3,10 +3,13 @@
 import numpy as np
 import pytest
 
+from irlx.motion.fastest_law import fastest_trapezoids
+from irlx.motion.sections import Sections
 from irlx.motion.trapezoid import Trapezoid
 from irlx.pacing.slowdown.clock import plan_clock
 from irlx.pacing.slowdown.clock_bounds import clock_bounds
 from irlx.pacing.slowdown.curve import JointCurve
+from irlx.pacing.slowdown.grid import acc_between
 from irlx.pacing.slowdown.short_ends import with_short_ends
 
 pytestmark = pytest.mark.req("MOT-21")
@@ -37,6 +40,24 @@ def test_a_line_slowed_very_much_is_a_trapezoid(tools, speed: float, up: float, 
     wanted = 0.3 / speed + 0.5 * speed * (1.0 / up + 1.0 / down)
     assert before.duration > wanted * 1.01
     assert wanted <= clock.duration < wanted * 1.001
+
+
+@pytest.mark.req("MOT-03")
+@pytest.mark.parametrize(("first", "last"), [(0.5, 2.0), (2.0, 0.5)])
+def test_joined_moves_have_ramps_by_their_own_acc(tools, first: float, last: float) -> None:
+    """Joints would allow more: the first move says how the tool speeds up, the last one how it brakes."""
+    curve, lim, speed = curve_of(), tools.limits(2, [0.03, 9.0], 100.0), 0.03
+    halves = Sections(np.full(2, 0.15), np.ones(2), np.array([first, last]), np.full(2, np.inf))
+    law = fastest_trapezoids(halves, 0.3)
+    rates, acc = law.rates_at(curve.s), acc_between(law, curve.s)
+    before = plan_clock(clock_bounds(curve, lim, rates, acc))
+    clock = with_short_ends(before, curve, lim, rates, law.rates_at, acc)
+    wanted = 0.3 / speed + 0.5 * speed * (1.0 / first + 1.0 / last)
+    assert before.duration > wanted * 1.01
+    assert wanted <= clock.duration < wanted * 1.001
+    gained = 0.5 * np.diff(clock.x) / np.diff(clock.s)
+    assert np.max(gained) <= first * (1.0 + 1e-9)
+    assert np.min(gained) >= -last * (1.0 + 1e-9)
 
 
 @pytest.mark.parametrize("speed", [1.0, 0.4])
