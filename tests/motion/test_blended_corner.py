@@ -14,7 +14,7 @@ from irlx.motion.fastest_law import fastest_trapezoids
 from irlx.motion.hermite import Jet, quintic
 from irlx.motion.line import Line
 from irlx.motion.polynomial_curve import PolynomialCurve
-from irlx.motion.sections import bounds_of
+from irlx.motion.sections import Shape, bounds_of
 from irlx.motion.turn import Turn
 
 pytestmark = pytest.mark.req("MOT-06")
@@ -171,6 +171,20 @@ def test_blends_near_a_cusp_and_on_it_are_measured_and_timed_alike() -> None:
         times.append(law.duration)
         assert law.rates_at(curve.length_at(np.array([cusp])))[0] < 2e-6
     assert times == pytest.approx([times[0]] * len(times), rel=2e-3)
+
+
+def test_the_rate_changes_steadily_round_a_corner() -> None:
+    """It falls to each of the two sharpest places and rises behind it, whatever the borders of sections."""
+    first = Line(np.zeros(3), np.eye(3), np.array([0.2, 0.0, 0.0]), np.eye(3))
+    second = Line(first.end_position, np.eye(3), np.array([0.2, 0.2, 0.0]), np.eye(3))
+    shape = blended_corner(first, second, 0.02).path.shape
+    joined = Shape.joined([straight := Shape(np.array([0.18]), *np.zeros((3, 1))), shape, straight])
+    law = fastest_trapezoids(bounds_of(joined, LAW), float(np.sum(joined.lengths)))
+    inside = law.starts[(law.ways[:-1] > 0.17) & (law.ways[1:] < law.length - 0.17)]
+    assert len(inside) > 10
+    assert np.count_nonzero(np.abs(inside) < 1e-6) <= 3, "no waiting for the next border"
+    signs = np.sign(law.starts[np.abs(law.starts) > 1e-6])
+    assert np.count_nonzero(np.diff(signs)) == 5, "up from rest, down, up, down, up, down to rest"
 
 
 def test_the_curvature_of_a_cusp_is_that_of_a_point() -> None:
