@@ -118,6 +118,15 @@ def test_circles_that_meet_half_way_before_and_behind_a_corner_stop_there(kit, b
     assert lost.reason == "100 mm beside the corner lead back to where they begin"
 
 
+@pytest.mark.parametrize(("missing", "back"), [(1e-7, True), (1e-3, True), (3.1e-3, True), (3.3e-3, False)])
+def test_half_a_round_but_for_a_hair_turns_back(kit, missing: float, back: bool) -> None:
+    """The end of the blend lies behind its start, off its tangents by half of the angle that is missing."""
+    found = corner_between(*rounds(kit, 1.0 - missing, Blend(1.0)))
+    assert isinstance(found, Lost) is back
+    assert not back or found.reason == "the path turns back on itself"
+    assert isinstance(corner_between(*rounds(kit, 1.0 - missing, Blend())), Corner)
+
+
 def test_half_a_round_and_a_hair_are_blended(kit) -> None:
     """The ends of the blend are 1e-7 m apart."""
     found = corner_between(*rounds(kit, 1.0 + 1e-7 / (2.0 * np.pi * 0.03), Blend(1.0)))

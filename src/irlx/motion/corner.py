@@ -6,10 +6,13 @@ from dataclasses import dataclass
 from math import inf, pi, sqrt
 
 import numpy as np
+from numpy.typing import NDArray
 
 from irlx.motion.blended_corner import BlendedCorner, blended_corner
 from irlx.motion.edges import Edge
 from irlx.motion.line import Line
+
+Array = NDArray[np.float64]
 
 REVERSAL = 0.01
 """A corner this near (rad) to a reversal is one: what is left of a curve there is a stop in all but name."""
@@ -31,6 +34,7 @@ _CURVE_SHARE = 0.7
 """Part of ACC that an arc may take across where a blend at the programmed speed shall join it."""
 
 _ENOUGH = 1e-3
+_TURNS_BACK = "the path turns back on itself"
 
 
 @dataclass(frozen=True)
@@ -64,8 +68,9 @@ def corner_between(before: Edge, after: Edge) -> Corner | Lost:
         distance = min(max(_least_distance(before, after, room), LEAST_PASS), room)
     if distance < LEAST_BLEND:
         return Lost(f"{distance * 1000.0:.3g} mm beside the corner are next to nothing")
-    if _closes(before, after, distance):
-        return Lost(f"{distance * 1000.0:.6g} mm beside the corner lead back to where they begin")
+    reason = _without_curve(before, after, distance)
+    if reason:
+        return Lost(reason)
     blend = blended_corner(before.path, after.path, distance)
     return Corner(blend, distance, asked.distance is not None and asked.distance > room)
 
@@ -81,15 +86,21 @@ def _hindrance(before: Edge, after: Edge) -> str:
             return f"{name} is too long"
     leaving = before.path.derivatives(np.array([before.path.length]))[0][0]
     joining = after.path.derivatives(np.array([0.0]))[0][0]
-    angle = float(np.arctan2(np.linalg.norm(np.cross(leaving, joining)), leaving @ joining))
-    return "the path turns back on itself" if angle > pi - REVERSAL else ""
+    return _TURNS_BACK if _angle(leaving, joining) > pi - REVERSAL else ""
 
 
-def _closes(before: Edge, after: Edge, distance: float) -> bool:
-    """Whether a blend would end where it begins."""
-    left = before.path.poses(np.array([before.path.length - distance])).position[0]
-    joined = after.path.poses(np.array([distance])).position[0]
-    return bool(np.linalg.norm(joined - left) < NEAREST_ENDS)
+def _without_curve(before: Edge, after: Edge, distance: float) -> str:
+    """Why no curve leads from one end of a blend to the other, or ''."""
+    places = (before.path, np.array([before.path.length - distance])), (after.path, np.array([distance]))
+    left, joined = (path.poses(s).position[0] for path, s in places)
+    if np.linalg.norm(joined - left) < NEAREST_ENDS:
+        return f"{distance * 1000.0:.6g} mm beside the corner lead back to where they begin"
+    back = (_angle(path.derivatives(s)[0][0], joined - left) > pi - REVERSAL for path, s in places)
+    return _TURNS_BACK if all(back) else ""
+
+
+def _angle(a: Array, b: Array) -> float:
+    return float(np.arctan2(np.linalg.norm(np.cross(a, b)), a @ b))
 
 
 def _least_distance(before: Edge, after: Edge, room: float) -> float:
@@ -101,7 +112,7 @@ def _least_distance(before: Edge, after: Edge, room: float) -> float:
     speeds = _speed(before), _speed(after)
 
     def excess(inverse: float) -> float:
-        if _closes(before, after, 1.0 / inverse):
+        if _without_curve(before, after, 1.0 / inverse):
             return inf
         blend = blended_corner(before.path, after.path, 1.0 / inverse)
         return _strain(blend, (before, after), speeds) - 1.0
