@@ -9,8 +9,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from irlx.blocks import ArcCourse, PoseTarget
+from irlx.promises import PATH_POSITION
 from irlx.verifier.geometry.arcs import arc_shape
-from irlx.verifier.geometry.chain_parts import Leg
+from irlx.verifier.geometry.bends import stretches_between
+from irlx.verifier.geometry.chain_parts import ChainParts, Leg, Part
 from irlx.verifier.geometry.chains import FEW, ChainWay
 from irlx.verifier.geometry.corners import Corner
 from irlx.verifier.geometry.curves import ArcCurve, LineCurve
@@ -118,3 +120,35 @@ def test_as_many_rows_tell_of_unseen_corners_whichever_are_given_together() -> N
         assert chain.leg == 3
     chain = ChainWay(legs_of(SHORT, corners), 2.0 * step)
     assert len(chain.take(points[: before + 1], still[: before + 1], True).along) == before + 1
+
+
+def test_a_row_off_the_way_waits_for_none_where_all_corners_are_known() -> None:
+    curves = straight((0, 0), (3, 0), (3, 3))
+    chain = ChainWay(legs_of(curves, [Corner(1e-3)]), 1e-3)
+    points = way_of(curves, [1e-3]).poses(np.arange(5e-4, 5.4e-3, 5e-4))[0]
+    points[-1, 0] += 1e-4
+    placed = chain.take(points, np.tile(STILL, (len(points), 1, 1)), False)
+    assert placed.position[:-1].max() < 1e-9
+    assert placed.position[-1] == pytest.approx(1e-4)
+
+
+def test_a_row_within_the_tolerance_of_two_parts_lies_on_the_nearer_one() -> None:
+    curves = straight((0, 0), (3, 0), (0, 1.2))
+    chain = ChainWay(legs_of(curves, [Corner(4e-7)]), 1e-3)
+    points = np.array([[0.0025, 0.0, 0.0], curves[1].point(np.array([2e-6]))[0]])
+    assert abs(points[1, 1]) < PATH_POSITION
+    placed = chain.take(points, np.tile(STILL, (2, 1, 1)), False)
+    assert placed.leg.tolist() == [0, 1]
+    assert placed.position.max() < 1e-12
+
+
+@pytest.mark.parametrize("corner", [ANYHOW, Corner(1e-3)], ids=["C_PASS", "C_CP"])
+def test_only_blends_that_are_told_bend_between_two_rows(corner: Corner) -> None:
+    parts = ChainParts(legs_of(straight((0, 0), (3, 0), (3, 3)), [corner]))
+    parts.settle(1e-3)
+    found = stretches_between(parts, (Part(0, False), 0.001), (Part(1, False), 0.002))
+    blend = parts.blends[0]
+    assert blend is not None
+    assert found.ways.sum() == pytest.approx(0.002 + blend.length, abs=1e-12)
+    assert found.bends[[0, -1]].tolist() == [0.0, 0.0]
+    assert found.bends.max() == 0.0 if corner is ANYHOW else found.bends.max() > 500.0
