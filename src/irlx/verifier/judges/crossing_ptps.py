@@ -111,21 +111,32 @@ class CrossingPtps:
         self._add_rates(demand, rows, first, last)
 
     def _corner(self, demand: Demand, start: Floats, end: Floats, corner: Pose | None) -> _End:
-        """Where the line from a posture to another one, followed on, has its tool in a corner."""
+        """Where the line from a posture to another one, followed on, first has its tool in a corner.
+
+        Where it never has, where the tool comes nearest. Once a joint has turned round it is there again.
+        """
         step = end - start
         length = float(np.linalg.norm(step))
         if corner is None or length == 0.0:
             return _End(0.0, 0.0)
+
+        def off(shares: Floats) -> Floats:
+            return self._off(demand, end + shares[:, None] * step, corner)
+
         shares = np.linspace(0.0, 1.0, SAMPLES) ** 2 * FARTHEST
-        best = int(np.argmin(self._off(demand, end + shares[:, None] * step, corner)))
-        low, high = shares[max(best - 1, 0)], shares[min(best + 1, SAMPLES - 1)]
+        sampled = np.concatenate([[np.inf], off(shares), [np.inf]])
+        dips = np.flatnonzero((sampled[1:-1] <= sampled[:-2]) & (sampled[1:-1] <= sampled[2:]))
+        low, high = shares[np.maximum(dips - 1, 0)], shares[np.minimum(dips + 1, SAMPLES - 1)]
         for _ in range(60):
-            inner = np.array([high - GOLDEN * (high - low), low + GOLDEN * (high - low)])
-            values = self._off(demand, end + inner[:, None] * step, corner)
-            low, high = (low, inner[1]) if values[0] <= values[1] else (inner[0], high)
-        way = 0.5 * (low + high)
-        off = float(self._off(demand, end + np.array([[way], [0.0]]) * step, corner).min())
-        return _End(way * length, off)
+            inner = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+            before, behind = np.split(off(np.concatenate(inner)), 2)
+            falls = before <= behind
+            low, high = np.where(falls, low, inner[0]), np.where(falls, inner[1], high)
+        ways = np.concatenate([[0.0], 0.5 * (low + high)])
+        found = off(ways)
+        fits = np.flatnonzero(found <= FITS)
+        best = int(fits[0] if fits.size else np.argmin(found))
+        return _End(float(ways[best]) * length, float(found[best]))
 
     def _poses(self, demand: Demand, q: Floats) -> Pose:
         tools, robot = self._evidence.placer.tools, self._evidence.robot
