@@ -34,9 +34,9 @@ def check(
     coarse tick, in the cell that a run would take; `max_steps`, `inputs` and `files` are those of `irlx.run`.
     Without `cell` and `motion` this loads neither numpy nor Pinocchio.
     """
-    joints, of_cell = _cell_findings(cell) if cell is not None else (None, [])
+    of_cell = [] if cell is None else _cell_findings(cell)
     try:
-        analysis, ready = analyse_with_program(program, cell, joints)
+        analysis, ready = analyse_with_program(program, cell)
     except ProgramError as error:
         return list(error.diagnostics)
     found = list(analysis.diagnostics)
@@ -77,13 +77,12 @@ def _motion_findings(
         return [], list(error.diagnostics)
 
 
-def _cell_findings(cell: PathLike) -> tuple[tuple[str, ...], list[Diagnostic]]:
-    """Joints of a cell, none where it cannot be used, and the findings on it."""
+def _cell_findings(cell: PathLike) -> list[Diagnostic]:
+    """Findings on a cell."""
     # Imported here: validating a cell loads numpy, and most checks have no cell.
     from irlx.cell.load import load_cell
 
     try:
-        loaded = load_cell(Path(cell))
+        return list(load_cell(Path(cell)).warnings)
     except IrlxError as error:
-        return (), list(error.diagnostics)
-    return loaded.robot.joint_names, list(loaded.warnings)
+        return list(error.diagnostics)

@@ -29,7 +29,7 @@ from irlx.interpreter.channels.setup import ChannelSetup
 from irlx.interpreter.interpret import MAX_STEPS
 from irlx.pacing.inputs import InputFunction, Inputs, Trace
 from irlx.pacing.pauses import PauseFunction, Pauses, is_time
-from irlx.program import Program, ProgramError, cell_path, load
+from irlx.program import Program, ProgramError, cell_path, check_fits, load
 from irlx.promises import LONGEST_TICK, SHORTEST_TICK
 from irlx.recorded import Recorded, cell_of, check_joints, is_recorded, recorded
 from irlx.robot.kinematics import Kinematics
@@ -141,6 +141,8 @@ def _loaded_cell(program: Program | Recorded, given: CellGiven) -> Cell:
         cell = load_cell(cell_of(program, None if given is None else Path(given)))
     if isinstance(program, Recorded):
         check_joints(program.header, cell)
+    else:
+        check_fits(program, cell)
     return cell
 
 

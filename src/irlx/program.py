@@ -4,21 +4,20 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import partial
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePath
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from irlx.blocks import Origin
 from irlx.cell.find import find_cell, is_file
-from irlx.cell.frame_names import cell_table, frame_names
-from irlx.cell.obstacle_names import obstacle_names
+from irlx.cell.frame_names import frame_names
+from irlx.cell.known import KnownCell, known_of, known_of_file
 from irlx.diagnostics import Diagnostic, IrlxError, Place, SourceText, Span, report
 from irlx.diagnostics.near_files import near_files
 from irlx.diagnostics.whole_file import whole_file
 from irlx.language import tree
-from irlx.language.analysis import Analysis, CellJoints, CellNames, DataListResolver, analyse
+from irlx.language.analysis import Analysis, CellNames, DataListResolver, analyse
 from irlx.language.data_lists import ImportedList
 from irlx.language.modules import ImportedModule, ModuleProblem
 from irlx.language.move_count import move_count
@@ -65,7 +64,8 @@ class Program:
 
     `data_lists` are those of the program itself, `modules` all that it needs, each behind those that it
     imports. `sha256` is that of the file's bytes; it covers lists and modules as well, see `digest_of_all`.
-    `ignores` are what comments ask to ignore and only a run or a look at what can be executed finds.
+    `ignores` are what comments ask to ignore and only a run or a look at what can be executed finds. `known`
+    is what was known of its cell when it was analysed.
     """
 
     path: Path
@@ -76,6 +76,7 @@ class Program:
     data_lists: tuple[DataListFile, ...] = ()
     modules: tuple[ModuleFile, ...] = ()
     ignores: tuple[Ignore, ...] = ()
+    known: KnownCell = field(default_factory=KnownCell)
 
     @property
     def file_name(self) -> str:
@@ -118,7 +119,7 @@ class Program:
 
 
 def load(path: PathLike, cell: PathLike | Cell | None = None) -> Program:
-    """Read and analyse a program file; the frames of its cell are names it may use.
+    """Read and analyse a program file, with what its cell tells: names that it may use, joints of the robot.
 
     `cell` None: found as `cell_path` finds it. Raises ProgramError that holds all diagnostics; what is
     wrong with the cell is not told here.
@@ -136,9 +137,26 @@ def load_text(text: str, path: PathLike, cell: PathLike | Cell | None = None) ->
     return _loaded(Path(path), text.encode("utf-8"), cell)
 
 
+def check_fits(program: Program, cell: Cell) -> None:
+    """Refuse a program that has errors in a cell, though it had none with what was known of its cell before.
+
+    It is analysed anew where the cell tells other things, with its lists and modules as they were read.
+    Raises ProgramError that holds all diagnostics.
+    """
+    if program.known.tells_the_same(known_of(cell)):
+        return
+    read: list[Program | DataListFile | ModuleFile] = [program, *program.all_lists, *program.modules]
+    contents = {part.path: part.source.text.encode("utf-8") for part in read}
+    analysis = _analysis(
+        program.path, contents[program.path], _Beside(program.path, cell, contents.__getitem__)
+    )
+    if analysis.has_errors:
+        raise ProgramError(analysis.diagnostics)
+
+
 def _loaded(file: Path, content: bytes, cell: PathLike | Cell | None) -> Program:
-    files = _Beside(file)
-    analysis = _analysis(file, content, cell, files)
+    files = _Beside(file, cell)
+    analysis = _analysis(file, content, files)
     if analysis.has_errors or not isinstance(analysis.tree, tree.Program):
         raise ProgramError(_why_no_program(analysis))
     return _program(file, content, analysis.tree, analysis, files)
@@ -149,7 +167,15 @@ def _program(file: Path, content: bytes, root: tree.Program, analysis: Analysis,
     modules = tuple(files.modules)
     digest = digest_of_all(hashlib.sha256(content).hexdigest(), lists, modules)
     return Program(
-        file, analysis.source, root, analysis.diagnostics, digest, lists, modules, analysis.ignores
+        file,
+        analysis.source,
+        root,
+        analysis.diagnostics,
+        digest,
+        lists,
+        modules,
+        analysis.ignores,
+        files.known,
     )
 
 
@@ -178,24 +204,17 @@ def names_around(path: PathLike) -> tuple[DataListResolver, CellNames]:
 def analyse_text(text: str, path: PathLike, cell: PathLike | Cell | None = None) -> Analysis:
     """Analysis, with lints, of a text as if it stood in a file at `path`, as `load_text` takes it."""
     file = Path(path)
-    known: tuple[str, ...] | CellJoints = partial(_found_joints, file)
-    if not (cell is None or isinstance(cell, str | os.PathLike)):
-        known = cell.robot.joint_names
-    return _analysis(file, text.encode("utf-8"), cell, _Beside(file), known, lints=True)
+    return _analysis(file, text.encode("utf-8"), _Beside(file, cell), lints=True)
 
 
-def analyse_with_program(
-    path: PathLike, cell: PathLike | None = None, joints: tuple[str, ...] | None = None
-) -> tuple[Analysis, Program | None]:
+def analyse_with_program(path: PathLike, cell: PathLike | None = None) -> tuple[Analysis, Program | None]:
     """Analysis, with lints, of a file, and the program that `load` would give where it is one without errors.
 
-    The file is a program, a module or a data list. `joints` are those of its robot, None: those of the cell
-    that a run would find. Raises ProgramError where the file cannot be read.
+    The file is a program, a module or a data list. Raises ProgramError where the file cannot be read.
     """
     file = Path(path)
-    content, files = read_file(file), _Beside(file)
-    known = partial(_found_joints, file) if joints is None else joints
-    analysis = _analysis(file, content, cell, files, known, lints=True)
+    content, files = read_file(file), _Beside(file, cell)
+    analysis = _analysis(file, content, files, lints=True)
     if analysis.has_errors or not isinstance(analysis.tree, tree.Program):
         return analysis, None
     return analysis, _program(file, content, analysis.tree, analysis, files)
@@ -223,18 +242,29 @@ def _specification(root: tree.Program | tree.Module) -> Name | None:
     return None
 
 
+Read: TypeAlias = "Callable[[Path], bytes]"
+"""Gives the content of a file. Raises OSError or ValueError."""
+
+
+def _given(cell: PathLike | Cell | None) -> KnownCell | None:
+    """What a cell that is given tells, None where none is."""
+    if cell is None:
+        return None
+    return known_of_file(Path(cell)) if isinstance(cell, str | os.PathLike) else known_of(cell)
+
+
 class _ListFiles:
     """Reads the data lists beside a program, and keeps what there is to know of their files."""
 
-    def __init__(self, program: Path) -> None:
-        self._program = program
+    def __init__(self, program: Path, read: Read = whole_file) -> None:
+        self._program, self._content = program, read
         self._read: dict[str, tuple[Path, str]] = {}
 
     def __call__(self, name: str, place: Place) -> SourceText:
         """Text of the data list of a name. Raises IrlxError: IRL240, IRL241 at `place`, IRL130, IRL131."""
         path = self._program.with_name(f"{name}.dat")
         try:
-            content = whole_file(path)
+            content = self._content(path)
         except FileNotFoundError:
             raise IrlxError(report("IRL240", place, name=name, path=path, near=near_files(path))) from None
         except (OSError, ValueError) as cause:
@@ -252,15 +282,15 @@ class _Beside:
     """Reads the data lists and modules beside a program, each file once.
 
     `modules` are those that could be analysed, each behind those that it imports; `findings` those on them.
+    The `cell` of the program is that of its modules, too; None: the one that a run would find.
     """
 
-    def __init__(self, program: Path) -> None:
-        self.lists = _ListFiles(program)
+    def __init__(self, program: Path, cell: PathLike | Cell | None, read: Read = whole_file) -> None:
+        self.lists = _ListFiles(program, read)
         self.modules: list[ModuleFile] = []
         self.findings: list[Diagnostic] = []
-        self.names: Mapping[str, bool] | None = None
-        self.obstacles: tuple[str, ...] | None = None
-        self._open = [program]
+        self._program, self._known = program, _given(cell)
+        self._open, self._content = [program], read
         self._done: dict[Path, Analysis] = {}
 
     def __call__(self, name: str) -> Analysis | None:
@@ -271,7 +301,7 @@ class _Beside:
             raise ModuleProblem("IRL260", module=name, files=circle)
         if path not in self._done:
             try:
-                content = whole_file(path)
+                content = self._content(path)
             except FileNotFoundError:
                 return None
             except (OSError, ValueError) as cause:
@@ -284,13 +314,35 @@ class _Beside:
                 self._open.pop()
         return self._done[path]
 
+    @property
+    def known(self) -> KnownCell:
+        """What is known of the cell, as soon as the program has been analysed."""
+        return self._known or KnownCell()
+
+    def analysed(self, text: SourceText, *, lints: bool = False) -> Analysis:
+        """Analysis of the program, then of its modules, with all that its cell tells."""
+        return analyse(
+            text,
+            self,
+            lambda root: self._known_to(root).frames,
+            self.lists,
+            joints=(lambda root: self._known_to(root).joints) if self._known is None else self._known.joints,
+            obstacles=lambda root: self._known_to(root).obstacles,
+            lints=lints,
+        )
+
+    def _known_to(self, root: tree.Program | tree.Module) -> KnownCell:
+        if self._known is None:
+            found = _found_cell(self._program, root)
+            self._known = KnownCell() if found is None else known_of_file(found)
+        return self._known
+
     def _analysed(self, name: str, path: Path, content: bytes) -> Analysis:
         try:
             source = decode_source(str(path), content)
         except IrlxError as error:
             raise ModuleProblem("IRL261", module=name, path=path, cause=error.reason.message) from None
-        obstacles = lambda _: self.obstacles  # noqa: E731
-        analysis = analyse(source, self, lambda _: self.names, self.lists, obstacles=obstacles)
+        analysis = self.analysed(source)
         self.findings += analysis.diagnostics
         if isinstance(analysis.tree, tree.Module):
             lists = tuple(self.lists.file_of(found) for found in analysis.data_lists)
@@ -300,41 +352,10 @@ class _Beside:
         return analysis
 
 
-def _analysis(
-    path: Path,
-    content: bytes,
-    cell: PathLike | Cell | None,
-    files: _Beside,
-    joints: tuple[str, ...] | CellJoints = (),
-    *,
-    lints: bool = False,
-) -> Analysis:
+def _analysis(file: Path, content: bytes, files: _Beside, *, lints: bool = False) -> Analysis:
     """Analysis of the bytes of a file. Raises ProgramError for bytes that are no text."""
-
-    def cell_names(root: tree.Program | tree.Module) -> Mapping[str, bool] | None:
-        if cell is None:
-            files.names = _found_names(path, root)
-        elif isinstance(cell, str | os.PathLike):
-            files.names = frame_names(Path(cell))
-        else:
-            files.names = {name: name in cell.link_frames for name in (*cell.frames, *cell.link_frames)}
-        return files.names
-
-    def obstacles(root: tree.Program | tree.Module) -> tuple[str, ...] | None:
-        if not (cell is None or isinstance(cell, str | os.PathLike)):
-            files.obstacles = cell.scene.names
-            return files.obstacles
-        of_cell = _found_cell(path, root) if cell is None else Path(cell)
-        # A cell that is no TOML has no names to miss: what is wrong with it is told when it is loaded.
-        if of_cell is not None and cell_table(of_cell):
-            files.obstacles = obstacle_names(of_cell)
-        return files.obstacles
-
     try:
-        text = decode_source(str(path), content)
-        analysis = analyse(
-            text, files, cell_names, files.lists, joints=joints, obstacles=obstacles, lints=lints
-        )
+        analysis = files.analysed(decode_source(str(file), content), lints=lints)
     except IrlxError as error:
         raise ProgramError(error.diagnostics) from error
     found = (*analysis.diagnostics, *files.findings)
@@ -345,17 +366,6 @@ def _found_names(path: Path, root: tree.Program | tree.Module) -> Mapping[str, b
     """Names of the frames of the cell that a run of this file would find, None where there is none."""
     cell = _found_cell(path, root)
     return None if cell is None else frame_names(cell)
-
-
-def _found_joints(path: Path, root: tree.Program | tree.Module) -> tuple[str, ...]:
-    """Names of the joints of the robot in the cell that a run of this file would find."""
-    cell = _found_cell(path, root)
-    if cell is None:
-        return ()
-    # Imported here: a program without a cell needs no reader of robots.
-    from irlx.cell.joint_names import joint_names
-
-    return joint_names(cell)
 
 
 def _found_cell(path: Path, root: tree.Program | tree.Module) -> Path | None:

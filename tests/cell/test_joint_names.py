@@ -6,6 +6,7 @@ import pytest
 
 from irlx.cell.errors import CellError
 from irlx.cell.joint_names import joint_names
+from irlx.cell.known import known_of, known_of_file
 from irlx.cell.load import load_cell
 from irlx.cell.named import robot_names
 
@@ -22,7 +23,10 @@ pytestmark = pytest.mark.req("LANG-10")
 
 @pytest.mark.parametrize("path", sorted(PROGRAMS.rglob("*.toml")), ids=lambda path: path.name)
 def test_shipped_cells(path):
-    assert joint_names(path) == load_cell(path).robot.joint_names
+    cell = load_cell(path)
+    assert joint_names(path) == cell.robot.joint_names
+    # Else a program that was loaded would be looked at twice.
+    assert known_of_file(path).tells_the_same(known_of(cell))
 
 
 @pytest.mark.parametrize("name", robot_names())

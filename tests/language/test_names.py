@@ -159,3 +159,32 @@ def test_names_of_the_cell():
         source_text("t.irl", text), cell_names=lambda program: ["Fixture", "Own", program.name.name]
     )
     assert [d.message for d in found.diagnostics] == ["unknown name 'fixtur'; did you mean 'Fixture'?"]
+
+
+@pytest.mark.parametrize(
+    ("statement", "declaration", "settable"),
+    [
+        ("IN_2 := TRUE;", "VAR INPUT BOOL: IN_2 AT 2;", False),
+        ("Ain_07 := 1.5;", "VAR INPUT REAL: Ain_07 AT 7;", False),
+        ("OUT_0 := TRUE;", "VAR OUTPUT BOOL: OUT_0 AT 0;", True),
+        ("AOUT_3 := 1.5;", "VAR OUTPUT REAL: AOUT_3 AT 3;", True),
+    ],
+)
+@pytest.mark.req("LANG-44")
+def test_a_port_without_a_declaration(statement, declaration, settable):
+    """The help declares this very port, and with that declaration the same errors are found as without."""
+    name = statement.split()[0]
+    found = analyse(source_text("t.irl", f"PROGRAM t; BEGIN {statement} ENDPROGRAM")).diagnostics
+    (warning,) = (one for one in found if one.code == "IRL205")
+    assert warning.help == f"declare it: {declaration[:-1]}; irlx fmt does so"
+    errors = [] if settable else [("IRL211", name)]
+    assert codes(f"PROGRAM t; BEGIN {statement} ENDPROGRAM") == [*errors, ("IRL205", name)]
+    assert codes(f"PROGRAM t; {declaration} BEGIN {statement} ENDPROGRAM") == errors
+
+
+@pytest.mark.parametrize("declaration", ["VAR OUTPUT BOOL: IN_2 AT 7;", "VAR BOOL: IN_2;"])
+def test_a_port_by_name_alone_may_be_something_else(declaration):
+    assert codes(f"PROGRAM t; {declaration} BEGIN IN_2 := TRUE; ENDPROGRAM") == []
+    # What a list that is not looked at declares is not known.
+    imported = codes("PROGRAM t; IMPORT DATALIST ports; BEGIN IN_2 := TRUE; ENDPROGRAM")
+    assert imported == [("IRL205", "IN_2")]

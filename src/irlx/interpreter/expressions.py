@@ -26,7 +26,7 @@ from irlx.interpreter.functions import Function
 from irlx.interpreter.operators import binary, unary
 from irlx.interpreter.rotations import FUNCTIONS
 from irlx.interpreter.scope import Routine, Scope
-from irlx.interpreter.types import BOOL, INT, ORIENTATION, REAL, STRING, Array, Record, Type
+from irlx.interpreter.types import BOOL, INT, ORIENTATION, REAL, STRING, Array, Record, Type, values_of_joints
 from irlx.interpreter.values import Value, has_arrays
 from irlx.language import tree
 from irlx.language.builtins import ACTUAL_VARIABLES, ASKING_FUNCTIONS, BARE_FUNCTIONS
@@ -353,7 +353,7 @@ class Expressions:
             names = " or ".join(type.name for type in fitting)
             return failing(fail("IRL229", self.source, node.span, candidates=names))
         data = {"expected": expected, "found": count(len(node.items), "value")}
-        return failing(fail("IRL222", self.source, node.span, **data))
+        return failing(fail("IRL222", self.source, node.span, help=values_of_joints(candidates), **data))
 
     def _fitting(self, node: tree.Aggregate, alike: Sequence[Type]) -> list[Type]:
         """Types that values in parentheses fit; one alone where they fit it and are wrong inside."""

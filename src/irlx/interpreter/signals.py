@@ -11,7 +11,7 @@ from irlx.interpreter.expressions import Expressions
 from irlx.interpreter.scope import Scope, Signal
 from irlx.interpreter.types import BOOL, INT, REAL, Type
 from irlx.language import tree
-from irlx.language.builtins import is_port_name
+from irlx.language.builtins import is_analog_port, is_input_port, is_port_name
 
 _KINDS: dict[str, tuple[SignalKind, Type]] = {
     "BOOL": (SignalKind.BOOL, BOOL),
@@ -48,9 +48,9 @@ def port_signal(name: tree.Name) -> Signal | None:
     """The signal of a port that is used by its own name, as OUT_3; None for another name."""
     if not is_port_name(name.key):
         return None
-    word, _, number = name.key.partition("_")
-    kind, type = _KINDS["REAL" if word.startswith("a") else "BOOL"]
-    is_input = word.endswith("in")
+    number = name.key.rpartition("_")[2]
+    kind, type = _KINDS["REAL" if is_analog_port(name.key) else "BOOL"]
+    is_input = is_input_port(name.key)
     port = Port(_port_name(is_input, kind, int(number)), kind)
     return Signal(name.name, type, _off(kind), port=port, is_input=is_input)
 

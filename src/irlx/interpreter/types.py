@@ -22,6 +22,7 @@ from irlx.language.types import (
     joint_type,
     joint_weights,
     predefined_types,
+    values_of_joints,
 )
 
 __all__ = [
@@ -46,4 +47,5 @@ __all__ = [
     "joint_type",
     "joint_weights",
     "predefined_types",
+    "values_of_joints",
 ]

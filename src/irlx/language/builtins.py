@@ -20,6 +20,8 @@ __all__ = [
     "STANDARD_CHANNELS",
     "SYSTEM_VARIABLES",
     "TYPES",
+    "is_analog_port",
+    "is_input_port",
     "is_port_name",
 ]
 
@@ -110,3 +112,13 @@ PORT_NAME = re.compile(r"a?(?:in|out)_[0-9]+")
 def is_port_name(key: str) -> bool:
     """Whether a casefolded name is that of a port, such as ``out_3``, usable without a declaration."""
     return PORT_NAME.fullmatch(key) is not None
+
+
+def is_input_port(key: str) -> bool:
+    """Whether a casefolded name is that of a port which the cell sets, such as ``in_3`` or ``ain_1``."""
+    return is_port_name(key) and key.partition("_")[0].endswith("in")
+
+
+def is_analog_port(key: str) -> bool:
+    """Whether a casefolded name is that of a port which carries numbers, such as ``aout_1``."""
+    return is_port_name(key) and key.startswith("a")

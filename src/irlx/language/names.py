@@ -16,6 +16,8 @@ from irlx.language.builtins import (
     PROCEDURES,
     SYSTEM_VARIABLES,
     TYPES,
+    is_analog_port,
+    is_input_port,
     is_port_name,
 )
 from irlx.language.data_lists import ImportedList, Imports, check_values
@@ -148,7 +150,7 @@ class NamePass:
         if is_port_name(name.key):
             if name.key not in self._reported:
                 self._reported.add(name.key)
-                self._add("IRL205", name.span, name=name.name)
+                self._add("IRL205", name.span, help=_port_declared(name), name=name.name)
             return
         self._unknown("IRL201", name, self.scope.known_values())
 
@@ -193,6 +195,8 @@ class NamePass:
         words = _READ_ONLY.get(kind) or _NOT_SET.get(kind)
         if symbol is None and target.base.key in BARE_FUNCTIONS and not target.selectors:
             words = "a function"
+        if symbol is None and is_input_port(target.base.key) and not self.scope.open:
+            words = "an input"
         if self.scope.is_given(target.base.key):
             words = "a frame of the cell"
         if words:
@@ -206,6 +210,14 @@ class NamePass:
 
     def _add(self, code: str, span: Span, **data: Any) -> None:
         self.findings.append(report(code, Place.in_text(self.scope.source, span), **data))
+
+
+def _port_declared(name: tree.Name) -> str:
+    """How the declaration of a port reads that is used by its own name."""
+    direction = "INPUT" if is_input_port(name.key) else "OUTPUT"
+    type = "REAL" if is_analog_port(name.key) else "BOOL"
+    number = name.key.rpartition("_")[2].lstrip("0") or "0"
+    return f"declare it: VAR {direction} {type}: {name.name} AT {number}; irlx fmt does so"
 
 
 _CHECKS: dict[type[tree.Node], Any] = {

@@ -10,7 +10,7 @@ NAMES: tuple[Code, ...] = (
     warning(
         "IRL205",
         "port '{name}' is not declared",
-        "declare it: VAR OUTPUT BOOL: name AT number; irlx fmt does so",
+        "declare it, an output as VAR OUTPUT BOOL: name AT number; irlx fmt does so",
     ),
     error("IRL206", "unknown function '{name}'{near}"),
     error("IRL207", "unknown procedure '{name}'{near}", "declare it with PROCEDURE"),

@@ -89,9 +89,9 @@ class Context:
         if type is self.names.types.get("robtarget") and is_number and found.value != 0:
             self.lint("IRL312", node, status=found.value)
 
-    def mismatch(self, node: tree.Node, expected: str, found: str) -> None:
-        """Add the finding on a value of another type than is expected."""
-        help = _WHOLE_NUMBERS if (expected, found) == ("INT", "REAL") else ""
+    def mismatch(self, node: tree.Node, expected: str, found: str, help: str = "") -> None:
+        """Add the finding on a value of another type than is expected, with what helps."""
+        help = _WHOLE_NUMBERS if (expected, found) == ("INT", "REAL") else help
         self.findings.append(report("IRL222", self.place(node), help=help, expected=expected, found=found))
 
     def place(self, node: tree.Node) -> Place:

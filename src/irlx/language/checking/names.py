@@ -6,7 +6,14 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from irlx.language.builtins import ACTUAL_VARIABLES, FOLLOWED_VARIABLES, SYSTEM_VARIABLES, is_port_name
+from irlx.language.builtins import (
+    ACTUAL_VARIABLES,
+    FOLLOWED_VARIABLES,
+    SYSTEM_VARIABLES,
+    is_analog_port,
+    is_input_port,
+    is_port_name,
+)
 from irlx.language.symbols import Symbol, SymbolKind
 from irlx.language.types import (
     BOOL,
@@ -122,5 +129,4 @@ def port_entry(key: str) -> Entry | None:
     """What the name of a port means that is not declared."""
     if not is_port_name(key):
         return None
-    type = REAL if key.startswith("a") else BOOL
-    return Entry("input" if "in" in key else "output", type)
+    return Entry("input" if is_input_port(key) else "output", REAL if is_analog_port(key) else BOOL)

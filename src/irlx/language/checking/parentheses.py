@@ -9,7 +9,17 @@ from irlx.language import tree
 from irlx.language.checking.context import NOTHING, Context, Trial, Typed
 from irlx.language.checking.names import Constant, Names
 from irlx.language.ranges import UNIT_LENGTH
-from irlx.language.types import ORIENTATION, REAL, UNKNOWN, Array, Record, Type, is_number, same_type
+from irlx.language.types import (
+    ORIENTATION,
+    REAL,
+    UNKNOWN,
+    Array,
+    Record,
+    Type,
+    is_number,
+    same_type,
+    values_of_joints,
+)
 from irlx.language.words import count
 
 _NO_FIT = frozenset({"IRL222", "IRL223"})
@@ -134,7 +144,7 @@ class Parentheses(Context):
         for item in node.items:
             self.fitted(item, UNKNOWN)
         expected = " or ".join(type.name for type in candidates)
-        self.mismatch(node, expected, count(len(node.items), "value"))
+        self.mismatch(node, expected, count(len(node.items), "value"), values_of_joints(candidates))
         return NOTHING
 
     def _attempt(self, node: tree.Expression, type: Type) -> Trial:

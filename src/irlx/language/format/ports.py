@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from irlx.diagnostics import SourceText
 from irlx.language import tree
-from irlx.language.builtins import PORT_NAME
+from irlx.language.builtins import PORT_NAME, is_analog_port, is_input_port
 from irlx.language.data_lists import DataListResolver, imports_of
 from irlx.language.format.reading import Reading
 from irlx.language.lexing import Lexed
@@ -99,8 +99,8 @@ def _declarations(names: Sequence[tree.Name]) -> str:
         "OUTPUT REAL": [],
     }
     for name in names:
-        direction = "INPUT" if name.key.partition("_")[0].endswith("in") else "OUTPUT"
-        groups[f"{direction} {'REAL' if name.key.startswith('a') else 'BOOL'}"].append(name)
+        direction = "INPUT" if is_input_port(name.key) else "OUTPUT"
+        groups[f"{direction} {'REAL' if is_analog_port(name.key) else 'BOOL'}"].append(name)
     lines = []
     for words, members in groups.items():
         ports = [f"{one.name} AT {_number(one.name)}" for one in sorted(members, key=_by_number)]

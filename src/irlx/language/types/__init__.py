@@ -35,6 +35,7 @@ from irlx.language.types.predefined import (
     joint_weights,
     known_types,
     predefined_types,
+    values_of_joints,
 )
 from irlx.language.types.signatures import Parameter, Signature, built_in_functions
 
@@ -76,4 +77,5 @@ __all__ = [
     "longest_field",
     "predefined_types",
     "same_type",
+    "values_of_joints",
 ]

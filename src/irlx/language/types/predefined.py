@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from irlx.language.types.model import (
     ANY_BOUNDS,
@@ -17,6 +17,7 @@ from irlx.language.types.model import (
     Record,
     Type,
 )
+from irlx.language.words import count
 
 
 def _reals(name: str, *fields: str) -> Record:
@@ -89,6 +90,15 @@ def joint_record(key: str, joints: int | None) -> Record:
     if joints is None:
         return Record(key.upper(), (), pattern)
     return _reals(key.upper(), *(pattern.format(number) for number in range(1, joints + 1)))
+
+
+def values_of_joints(candidates: Iterable[Type]) -> str:
+    """How many values a MAIN_JOINT among the types takes, as help; '' where none is or nobody knows."""
+    for type in candidates:
+        if isinstance(type, Record) and type.name.casefold() == "main_joint" and not type.pattern:
+            joints = len(type.fields)
+            return f"{type.name} takes {count(joints, 'value')}: the robot has {count(joints, 'joint')}"
+    return ""
 
 
 def joint_bounds(types: Mapping[str, Type]) -> Record:
