@@ -23,7 +23,7 @@ from irlx.pacing.slowdown.planned import PlannedMotion, Refusal
 from irlx.pacing.walk import Walk, walk
 from irlx.transform.criteria.least_motion import LeastMotion
 from irlx.transform.qp.proxqp import ProxQpSolver
-from irlx.transform.step_bounds import StepLimiter
+from irlx.transform.step_bounds import BoundSource, StepLimiter
 from irlx.transform.tick import TickSolution, TickSolver, TickStatus
 from long_run import first, first_rows
 from machines import machine
@@ -236,6 +236,24 @@ def test_a_criterion_that_ticks_do_not_settle_on_is_held_back_and_costs_no_time(
     # The rows are those of the term that is told, which a stopped run goes on with.
     again, _ = _walked(replace(motion, term=found.term), model, solver, thorough=False)
     np.testing.assert_array_equal(found.q, again.q)
+
+
+@pytest.mark.parametrize("bound", [BoundSource.SPEED, BoundSource.ACCELERATION])
+@pytest.mark.parametrize("later", [0, 1, None], ids=["as fast", "slower", "refused"])
+def test_a_walk_that_jumps_onto_a_bound_gives_way_to_a_plan_as_fast(monkeypatch, bound, later) -> None:
+    """A jump to another minimum is kept by acceleration bounds, and what is planned needs none."""
+    motion = unsettled_motion()
+    jumping = PacedPath(np.zeros((9, 11)), np.full((9, 11), 1 + bound, np.int8), (), 0, motion.term)
+    plan = Refusal(0.1) if later is None else object.__new__(PlannedMotion)
+    if isinstance(plan, PlannedMotion):
+        object.__setattr__(plan, "q", np.zeros((9 + later, 11)))
+    monkeypatch.setattr(path_motion, "_walked_held_back", lambda *_: jumping)
+    monkeypatch.setattr(path_motion, "plan_motion", lambda *_: plan)
+    monkeypatch.setattr(path_motion, "_planned", lambda *_: "planned")
+    robot = machine("koch11")
+    solver = TickSolver(robot.kinematics, ProxQpSolver())
+    found = path_motion._paced(motion, robot.model(robot.unlimited()), solver)
+    assert found == "planned" if later == 0 else found is jumping
 
 
 def test_what_draws_the_joints_is_planned_before_it_is_held_back(monkeypatch) -> None:

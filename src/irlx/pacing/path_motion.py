@@ -150,18 +150,21 @@ def _paced(motion: PathMotion, model: Model, solver: TickSolver) -> PacedPath | 
     kept = walked.halt is None and broken is None
     if kept and not (motion.term.draws and _lags(walked.active)):
         return _as_walked(motion, walked)
-    at_once = _walked_held_back(motion, model, solver) if _is_unsettled(walked.halt) else None
-    if at_once is not None:
-        return at_once
+    held = _walked_held_back(motion, model, solver) if _is_unsettled(walked.halt) else None
+    if held is not None and not _lags(held.active):
+        return held
     if motion.watch is not None:
         motion.watch.plans()
     try:
         found = plan_motion(model, _task(motion, undisturbed))
     except IrlxError:
         # Too slow for the caller, or too many ticks: a walk that keeps everything still serves.
-        if kept:
-            return _as_walked(motion, walked)
-        raise
+        served = _as_walked(motion, walked) if kept else held
+        if served is None:
+            raise
+        return served
+    if held is not None and (isinstance(found, Refusal) or len(found.q) > len(held.q)):
+        return held
     if not isinstance(found, Refusal):
         return _planned(motion, model, found)
     if not kept:
@@ -175,7 +178,9 @@ def _paced(motion: PathMotion, model: Model, solver: TickSolver) -> PacedPath | 
 def _walked_held_back(motion: PathMotion, model: Model, solver: TickSolver) -> PacedPath | None:
     """The walk with its criterion held back a little, if that does every tick: no reason to be slower.
 
-    Not where it draws the joints to a posture, from which that would keep them: a plan reaches it.
+    Not where it draws the joints to a posture, from which that would keep them: a plan reaches it. Where a
+    speed or acceleration bound holds a joint the step of a tick may have jumped: a plan that takes no longer
+    is smoother.
     """
     if motion.term.draws:
         return None
