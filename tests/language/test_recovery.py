@@ -127,6 +127,46 @@ def test_mistake_in_a_body(analysed, text):
     assert sorted(told(analysed(in_body(text)))) == sorted(CASES[text])
 
 
+BESIDE = [
+    "WAIT 0,5 SEC;",
+    "x := y +;",
+    "MOVE LIN p WITH JOINTLIMIT (1, 2, 3);",
+    "IF a THEN x := 1; END_IF;",
+    "x := (1;",
+    "x := 1);",
+    "MOVE LIN p",
+    "x := 5,",
+    "x := 5",
+]
+
+
+@pytest.mark.req("LANG-05")
+@pytest.mark.parametrize("mistake", BESIDE)
+def test_statements_beside_a_mistake_are_looked_at(analysed, mistake):
+    """A wrong type is told although a statement next to it has a mistake; what was guessed is not judged."""
+    wrong = "IRL222 expected INT, found REAL"
+    alone = told(analysed(in_body(f"{mistake}\nn := 7;")))
+    assert len(alone) == 1
+    assert told(analysed(in_body(f"{mistake}\nn := 7 / 2;"))) == [*alone, f"4:6 {wrong}"]
+    before = told(analysed(in_body(f"n := 7 / 2;\n{mistake}\nn := 7;")))
+    assert before == [f"3:6 {wrong}", alone[0].replace("3:", "4:", 1)]
+
+
+@pytest.mark.req("LANG-05")
+@pytest.mark.parametrize(
+    "text",
+    [
+        "n := 1 2;",
+        "n := r[1 + p;",
+        "b := n ; 0;",
+        "b := n and\n  r[ + 1;",
+        "x := 5 n := 7 / 2;",
+    ],
+)
+def test_what_stands_in_a_statement_with_a_mistake_is_not_judged(analysed, text):
+    assert len(analysed(in_body(text)).diagnostics) == 1
+
+
 WHOLE = {
     "": ["1:1 IRL117 the file holds no program"],
     "x": ["1:1 IRL116 expected PROGRAM, MODULE or DATALIST at the start, found the name 'x'"],

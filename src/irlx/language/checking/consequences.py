@@ -2,36 +2,57 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby
 
-from irlx.diagnostics import Diagnostic
+from irlx.diagnostics import Diagnostic, Span
 from irlx.language import tree
 from irlx.language.parsing.driver import MAX_ERRORS
 
 _DECLARING = (tree.Program, tree.Module, tree.ProcedureDeclaration, tree.FunctionDeclaration)
 _MISSING_VAR = "should VAR stand above its declaration? Other constants of the list are set as well"
+_STATEMENT_ENDS = frozenset({"IRL102", "IRL122"})
+"""Mistakes at the end of a statement, behind which the next one begins."""
 _SEVERAL = 3
 """So many constants of one list are not set by mistake."""
 
 
 def standing_alone(findings: list[Diagnostic], syntax: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Findings away from mistakes in the text: beside one, words are missing or have been guessed.
+    """Findings away from mistakes in the text: in a statement with one, words are missing or guessed.
 
     None where the text has more mistakes than are told: any of these may be the cause.
     """
     syntax = [mistake for mistake in syntax if mistake.is_error]
     if len(syntax) >= MAX_ERRORS:
         return []
-    torn: set[tuple[str, int]] = set()
+    torn: dict[str, list[Span]] = {}
     for mistake in syntax:
         place = mistake.place
-        if place is not None and place.line is not None:
-            torn.update((place.file, place.line + near) for near in (-1, 0, 1))
-    if not torn:
-        return findings
-    return [f for f in findings if f.place is None or (f.place.file, f.place.line) not in torn]
+        if place is not None and place.text is not None and place.span is not None:
+            span = _statement(place.text.text, place.span, ends_there=mistake.code in _STATEMENT_ENDS)
+            torn.setdefault(place.file, []).append(span)
+    return [finding for finding in findings if not _stands_in(finding, torn)] if torn else findings
+
+
+def _statement(text: str, mistake: Span, *, ends_there: bool) -> Span:
+    """The statement or declaration with a mistake, as ``;`` shows it; one that `ends_there` lacks its own."""
+    start = text.rfind(";", 0, mistake.start) + 1
+    if start and text[start : mistake.start].isspace() and "\n" not in text[start : mistake.start]:
+        # What begins with a mistake on a line that goes on may belong to the statement before.
+        start = text.rfind(";", 0, start - 1) + 1
+    if ends_there and not text[mistake.end :].partition("\n")[0].strip():
+        return Span(start, mistake.end)
+    end = text.find(";", mistake.start if text[mistake.start : mistake.end] == ";" else mistake.end)
+    return Span(start, len(text) if end < 0 else end)
+
+
+def _stands_in(finding: Diagnostic, torn: Mapping[str, Sequence[Span]]) -> bool:
+    place = finding.place
+    if place is None or place.span is None:
+        return False
+    at = place.span.start
+    return any(span.start <= at <= span.end for span in torn.get(place.file, ()))
 
 
 def without_missing_var(
