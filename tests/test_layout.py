@@ -31,6 +31,7 @@ ORDER = (
 DOORS = {"notebook", "viewer", "cli"}
 """Folders through which people come in: they use what wires stages together."""
 WIRING = {
+    "given_inputs",
     "given_values",
     "job",
     "pipeline",

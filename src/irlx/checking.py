@@ -14,7 +14,7 @@ from irlx.language.suppression import BY_MOTION, unused_finding, without_ignored
 from irlx.program import Program, ProgramError, analyse_with_program
 
 if TYPE_CHECKING:
-    from irlx.job import InputsGiven
+    from irlx.given_inputs import InputsGiven
 
 PathLike = str | os.PathLike[str]
 

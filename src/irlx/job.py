@@ -6,28 +6,27 @@ import hashlib
 import os
 import platform
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from importlib.metadata import distribution
-from itertools import pairwise
-from math import inf, isfinite
+from math import inf
 from pathlib import Path
-from typing import IO, Any
+from typing import IO
 
 from irlx._version import __version__
 from irlx.cell.cell import Cell
 from irlx.cell.find import is_file
-from irlx.cell.input_file import read_input_file
 from irlx.cell.load import load_cell
 from irlx.cell.made_constraints import constrained
 from irlx.diagnostics import IrlxError, report
 from irlx.diagnostics.whole_file import whole_file
+from irlx.given_inputs import InputsGiven, inputs_of
 from irlx.given_values import check_count, check_kind, check_number
 from irlx.interpreter.channels.pieces import InputGiven
 from irlx.interpreter.channels.setup import ChannelSetup
 from irlx.interpreter.interpret import MAX_STEPS
-from irlx.pacing.inputs import InputFunction, Inputs, Trace
+from irlx.pacing.inputs import Inputs
 from irlx.pacing.pauses import PauseFunction, Pauses, is_time
 from irlx.program import Program, ProgramError, cell_path, check_fits, load
 from irlx.promises import LONGEST_TICK, SHORTEST_TICK
@@ -39,8 +38,6 @@ from irlx.streams.making import Making
 PathLike = str | os.PathLike[str]
 CellGiven = Cell | PathLike | None
 """A cell that has been loaded, the path of its file, or None where it is found beside the program."""
-InputsGiven = InputFunction | Mapping[str, Sequence[tuple[float, float]]] | PathLike | None
-"""A function of name and time (s), traces by name (times in s with the value from each on), or a CSV file."""
 
 _VERSION_LINE = re.compile(r"^Version: *(\S+)", re.MULTILINE)
 LEAST_TICK_MS = SHORTEST_TICK * 1e3
@@ -85,7 +82,8 @@ def prepare(
     `cell` None: the file that SYSTEM SPECIFICATION names, else the program's own name with .toml; a Cell is
     taken as it is, whatever its file says. A stream file in the place of a program is replayed, at its own
     tick.
-    Raises ProgramError, CellError, or IrlxError with IRL006 for a number out of range.
+    Raises ProgramError, CellError, or IrlxError: IRL006 for a number out of range, IRL649 for a value that is
+    given to an input which nobody has.
     """
     check_kind("cell=", cell, (Cell, str, os.PathLike), "a path, or a cell that has been loaded")
     if not isinstance(program, Program | Recorded):
@@ -104,7 +102,7 @@ def prepare(
     check_count("--max-steps", max_steps, 1)
     check_number("--pause", pause_s, "a pause lasts a number of seconds, 0 or more", is_time)
     slowest = inf if max_slow is None else max_slow
-    said = inputs_of(loaded, inputs)
+    said = inputs_of(program, loaded, inputs)
     steps = MAX_STEPS if max_steps is None else max_steps
     more = _channels(program, loaded, files, input, output), Pauses(pause_s, on_pause)
     untold = _untold(
@@ -212,37 +210,6 @@ def _version(package: str) -> str:
     installed = distribution(package)
     found = _VERSION_LINE.search(installed.read_text("METADATA") or "")
     return found[1] if found else installed.version
-
-
-def inputs_of(cell: Cell, given: InputsGiven) -> Inputs:
-    """What inputs say: first `given`, a function, traces by name or the path of a CSV; else the cell.
-
-    Raises CellError for a file that is no such CSV, IrlxError, IRL006, for what says nothing of inputs.
-    """
-    if callable(given):
-        return Inputs(cell.inputs, given)
-    if isinstance(given, str | os.PathLike):
-        return Inputs({**cell.inputs, **read_input_file(Path(given))})
-    traces: Any = {} if given is None else given
-    if not isinstance(traces, Mapping):
-        cause = "a path, a function of name and time, or traces by name"
-        raise IrlxError(report("IRL006", option="inputs=", value=repr(given), cause=cause))
-    own = {name.casefold(): _trace(name, trace) for name, trace in traces.items()}
-    return Inputs({**cell.inputs, **own})
-
-
-def _trace(name: str, given: Sequence[tuple[float, float]]) -> Trace:
-    """Times and values of an input. Raises IrlxError, IRL006."""
-    try:
-        trace = tuple((float(at), float(value)) for at, value in given)
-    except (TypeError, ValueError):
-        trace = ((inf, inf),)
-    times = [at for at, _ in trace]
-    rising = all(earlier < later for earlier, later in pairwise(times))
-    if rising and all(isfinite(value) and 0.0 <= at < inf for at, value in trace):
-        return trace
-    cause = "pairs of a time in s, 0 or more and rising, and of a value"
-    raise IrlxError(report("IRL006", option="inputs=", value=name, cause=cause))
 
 
 def _loaded(path: PathLike, cell: CellGiven) -> Program:

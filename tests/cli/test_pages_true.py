@@ -137,9 +137,12 @@ def test_examples_on_the_command_line(tmp_path, monkeypatch, capsys, code):
     for name in ("p.irl", "p.csv", "lonely.irl"):
         (tmp_path / name).write_text(PLAIN_PROGRAM, encoding="utf-8")
     (tmp_path / "p.toml").write_text(PLAIN_CELL, encoding="utf-8")
-    (tmp_path / "inputs.csv").write_text("time,input,value\n", encoding="utf-8")
+    example = section(code, "Example")
+    if fence(example, "irl"):
+        (tmp_path / "p.irl").write_text(fence(example, "irl"), encoding="utf-8")
+    (tmp_path / "inputs.csv").write_text(fence(example, "csv") or "time,input,value\n", encoding="utf-8")
     before = sorted(tmp_path.iterdir())
-    command, *expected = fence(section(code, "Example"), "console").splitlines()
+    command, *expected = fence(example, "console").splitlines()
     assert command.startswith("$ irlx ")
     assert code in expected[0]
     assert main(command.split()[2:]) == 2

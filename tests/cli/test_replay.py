@@ -66,7 +66,7 @@ def made(folder: Path, name: str, cell: str = CELL) -> irlx.Run:
     (folder / "p.toml").write_text(cell, encoding="utf-8")
     (folder / "p.irl").write_text(f"PROGRAM p;\n{PROGRAMS[name]}ENDPROGRAM;\n", encoding="utf-8")
     if (name, cell) not in _made:
-        inputs = {"IN_3": [(0.0, 0.0), (2.0, 1.0)]}
+        inputs = {"IN_3": [(0.0, 0.0), (2.0, 1.0)]} if "INPUT" in PROGRAMS[name] else {}
         _made[name, cell] = irlx.run(folder / "p.irl", inputs=inputs, pause_s=0.03)
     _made[name, cell].save(folder / "p.irdata")
     return _made[name, cell]

@@ -52,6 +52,15 @@ ENDPROGRAM
 """
 
 
+LOOK = """
+PROCEDURE look;
+VAR ANALOG INPUT: inside AT 8;
+BEGIN
+  WRITELN(inside);
+ENDPROC;
+"""
+
+
 def ran(folder: Path, text: str, traces: str = "", **given) -> irlx.Run:
     (folder / "p.toml").write_text(CELL + traces, encoding="utf-8")
     (folder / "p.irl").write_text(text, encoding="utf-8")
@@ -156,10 +165,65 @@ def test_values_of_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert "expected a time after 1 s for go, found 1" in told
 
 
+BOTH = "VAR INPUT BOOL: part AT 3, other AT 4; OUTPUT BOOL: a AT 1, b AT 2;"
+COPIES = program("  a := part;\n  b := other;", BOTH)
+
+
+@pytest.mark.req("LANG-43")
+@pytest.mark.parametrize("name", ["part", "in_3", "PART"])
+def test_what_is_given_for_an_input_counts_by_each_of_its_names_and_others_stay(
+    tmp_path: Path, name: str
+) -> None:
+    """The cell names the input as the program does, what is given may name its port."""
+    cell = "part = [[0, true]]\nIN_4 = [[0, true]]\n"
+    run = ran(tmp_path, COPIES, cell, inputs={name: [(0.0, 0.0)]})
+    assert outputs(run) == [(0.0, "OUT_1", False), (0.0, "OUT_2", True)]
+
+
+def refused(folder: Path, text: str, given: Any) -> list[irlx.Diagnostic]:
+    (folder / "p.toml").write_text(CELL + "Spare = [[0, 1]]\n", encoding="utf-8")
+    (folder / "p.irl").write_text(text, encoding="utf-8")
+    with pytest.raises(irlx.IrlxError) as caught:
+        irlx.run(folder / "p.irl", inputs=given)
+    return list(caught.value.diagnostics)
+
+
+@pytest.mark.req("LANG-43")
+def test_every_name_that_nothing_has_is_told_at_its_line(tmp_path: Path) -> None:
+    lines = "time,input,value\n0,part,1\n0,prat,1\n0,spare,1\n1,prat,0\n0,AIN_3,1\n0,In_4,1\n"
+    (tmp_path / "in.csv").write_text(lines, encoding="utf-8")
+    found = refused(tmp_path, COPIES, tmp_path / "in.csv")
+    assert [(one.code, one.place.key, one.data["name"]) for one in found if one.place] == [
+        ("IRL649", "line 3", "prat"),
+        ("IRL649", "line 6", "AIN_3"),
+    ]
+    assert found[0].message.endswith("has an input 'prat'; did you mean 'part'?")
+    assert "inputs are part, IN_3, other, IN_4, spare;" in found[0].help
+    (one,) = refused(tmp_path, COPIES, {"prat": [(0.0, 1.0)]})
+    assert (one.code, one.place) == ("IRL649", None)
+    assert main(["check", str(tmp_path / "p.irl"), "--motion", "--inputs", str(tmp_path / "in.csv")]) == 2
+
+
+def test_names_of_ports_that_only_a_run_knows_are_let_pass(tmp_path: Path) -> None:
+    """As those of modules, of ports used by their names, and of routines' own inputs are known."""
+    module = "MODULE m;\nEXPORT show;\nVAR INPUT INT: level AT 7;\nPROCEDURE show;\nBEGIN\n  WRITELN(level);\nENDPROC;"
+    (tmp_path / "m.irl").write_text(f"{module}\nENDMODULE\n", encoding="utf-8")
+    declared = "FROM m IMPORT show; CONST INT: n := 5; VAR INPUT BOOL: part AT n + 1; OUTPUT BOOL: lamp AT 1;"
+    text = program("  lamp := IN_9;\n  IF part THEN look; show; ENDIF;", declared + LOOK)
+    given = {"IN_6": 1, "level": 2, "AIN_7": 2, "in_9": 0, "inside": 1, "AIN_8": 1.5}
+    found = refused(tmp_path, text, {name: [(0.0, value)] for name, value in given.items()} | {"AIN_6": ()})
+    assert [(one.code, one.data.get("name")) for one in found] == [("IRL649", "AIN_6")]
+
+
+def test_names_that_are_no_texts(tmp_path: Path) -> None:
+    (found,) = refused(tmp_path, COPIES, {3: [(0.0, 1.0)]})
+    assert found.code == "IRL006"
+
+
 @pytest.mark.parametrize("end", ["\r", "\r\n", "\n"])
 def test_lines_of_a_file_end_in_any_way(tmp_path: Path, end: str) -> None:
     (tmp_path / "in.csv").write_bytes(end.join(["time,input,value", "0,go,FALSE", "0.5,go,TRUE"]).encode())
-    assert read_input_file(tmp_path / "in.csv") == {"go": ((0.0, 0.0), (0.5, 1.0))}
+    assert read_input_file(tmp_path / "in.csv").traces == {"go": ((0.0, 0.0), (0.5, 1.0))}
 
 
 def test_a_field_that_no_csv_holds(tmp_path: Path) -> None:

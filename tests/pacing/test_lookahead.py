@@ -9,6 +9,9 @@ import pytest
 from irlx.blocks import (
     AskAvoidingPosture,
     AskClearance,
+    AskInput,
+    AskInputChange,
+    AskPause,
     AskPose,
     AskPosture,
     AskStandstill,
@@ -26,6 +29,7 @@ from irlx.blocks import (
     PauseBlock,
     Port,
     PoseTarget,
+    Question,
     SignalBlock,
     SignalKind,
     WaitBlock,
@@ -141,6 +145,24 @@ def test_questions_that_do_not_ask_where_the_robot_is_stop_nothing() -> None:
     assert [note.code for note in notes] == ["IRL432"]
     assert "the answer depends on where the robot stands" in notes[0].message
     assert ahead.before(AskPosture(origin(3))) == []
+
+
+@pytest.mark.parametrize(
+    ("question", "why"),
+    [
+        (AskInput(origin(2), Port("IN_1", SignalKind.BOOL), ("a", "IN_1")), "an input is read at its moment"),
+        (AskInputChange(origin(2), (("a", "IN_1"),)), "an input is read at its moment"),
+        (AskPause(origin(2)), "the robot has to stand there"),
+    ],
+    ids=["read", "waited for", "pause"],
+)
+def test_what_belongs_to_a_moment_does_not_ask_where_the_robot_is(question: Question, why: str) -> None:
+    notes: list[Diagnostic] = []
+    ahead = Lookahead(lambda o: Place.in_text(TEXT, Span(o.start, o.end)), Notes(notes))
+    assert ahead.take(move(1)) == []
+    assert [len(group) for group in ahead.before(question)] == [1]
+    assert [note.code for note in notes] == ["IRL432"]
+    assert why in notes[0].message
 
 
 def test_what_is_written_is_no_question() -> None:

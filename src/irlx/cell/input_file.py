@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
 
@@ -16,8 +17,16 @@ _ENTRY = "a time in s, an input, and TRUE, FALSE or a number"
 _WORDS = {"true": 1.0, "false": 0.0}
 
 
-def read_input_file(path: Path) -> dict[str, tuple[tuple[float, float], ...]]:
-    """Traces by casefolded name, of a CSV with the columns time (s), input, value (TRUE, FALSE or a number).
+@dataclass(frozen=True)
+class InputFile:
+    """Traces by casefolded name, times (s) with the value from each on; `places` of their first lines, as spelt."""
+
+    traces: dict[str, tuple[tuple[float, float], ...]]
+    places: dict[str, Place]
+
+
+def read_input_file(path: Path) -> InputFile:
+    """Traces of a CSV with the columns time (s), input, value (TRUE, FALSE or a number).
 
     The times of each input rise. Raises CellError with every fault, IRL618 at its line; IRL001, IRL002 or
     IRL007 where the file cannot be read.
@@ -31,6 +40,7 @@ def read_input_file(path: Path) -> dict[str, tuple[tuple[float, float], ...]]:
     if head != HEADER:
         raise CellError(_fault(path, 1, f"the header {','.join(HEADER)}", ",".join(head) or "nothing"))
     traces: dict[str, list[tuple[float, float]]] = {}
+    places: dict[str, Place] = {}
     faults = []
     for number, line in enumerate(lines[1:], 2):
         if not line:
@@ -40,6 +50,8 @@ def read_input_file(path: Path) -> dict[str, tuple[tuple[float, float], ...]]:
             faults.append(_fault(path, number, _ENTRY, ",".join(line)))
             continue
         name, at, value = found
+        if name.casefold() not in traces:
+            places[name] = _place(path, number)
         trace = traces.setdefault(name.casefold(), [])
         if trace and at <= trace[-1][0]:
             faults.append(_fault(path, number, f"a time after {trace[-1][0]:g} s for {name}", f"{at:g}"))
@@ -47,7 +59,7 @@ def read_input_file(path: Path) -> dict[str, tuple[tuple[float, float], ...]]:
         trace.append((at, value))
     if faults:
         raise CellError(faults)
-    return {name: tuple(trace) for name, trace in traces.items()}
+    return InputFile({name: tuple(trace) for name, trace in traces.items()}, places)
 
 
 def _lines(text: str, path: Path) -> list[list[str]]:
@@ -73,5 +85,8 @@ def _entry(line: list[str]) -> tuple[str, float, float] | None:
 
 
 def _fault(path: Path, line: int, expected: str, found: str) -> Diagnostic:
-    place = Place(str(path), key=f"line {line}")
-    return report("IRL618", place, line=line, expected=expected, found=found)
+    return report("IRL618", _place(path, line), line=line, expected=expected, found=found)
+
+
+def _place(path: Path, line: int) -> Place:
+    return Place(str(path), key=f"line {line}")

@@ -18,7 +18,9 @@ def add_execution_options(parser: argparse.ArgumentParser) -> None:
         help="end with IRL510 after N statements (default: 10,000,000)",
     )
     parser.add_argument(
-        "--inputs", metavar="CSV", help="what inputs say: lines of time in s, input, value (else the cell's)"
+        "--inputs",
+        metavar="CSV",
+        help="what inputs say: lines of time in s, input, value (others: as in the cell)",
     )
     parser.add_argument(
         "--files", metavar="DIR", help="folder in which OPEN finds and makes files (default: the program's)"

@@ -24,10 +24,19 @@ InputFunction = Callable[[str, float], float | None]
 
 @dataclass(frozen=True)
 class Inputs:
-    """Traces by casefolded name of a port or signal, and a function that is asked first, if any."""
+    """Traces by casefolded name of a port or signal, and a function that is asked first, if any.
+
+    An input of which those say nothing, by any of its names, has its trace among the `others`.
+    """
 
     traces: Mapping[str, Trace] = field(default_factory=dict)
     function: InputFunction | None = None
+    others: Mapping[str, Trace] = field(default_factory=dict)
+
+    @property
+    def known(self) -> list[str]:
+        """Casefolded names of all traces, sorted."""
+        return sorted({*self.traces, *self.others})
 
     def value(self, names: Sequence[str], time: float, slack: float = 0.0) -> float | None:
         """Value of the first of `names` that is known, at a time in s; None where none is.
@@ -63,8 +72,10 @@ class Inputs:
         return min((at - time for trace in traces for at, _ in trace if at > time + slack), default=inf)
 
     def _trace(self, names: Sequence[str]) -> Trace | None:
-        keys = (name.casefold() for name in names)
-        return next((self.traces[key] for key in keys if key in self.traces), None)
+        keys = [name.casefold() for name in names]
+        return next(
+            (found[key] for found in (self.traces, self.others) for key in keys if key in found), None
+        )
 
 
 def answer_of_inputs(
@@ -82,7 +93,7 @@ def answer_of_inputs(
     names, port = question.names, question.port
     value = inputs.value(names, time, slack)
     if value is None:
-        known = sorted(inputs.traces)
+        known = inputs.known
         data: dict[str, Any] = {"name": names[0], "port": port.name, "known": ", ".join(known) or "none"}
         data["near"] = near_matches(names[0], known)
         raise PacingError(report("IRL530", locate(question.origin), **data))

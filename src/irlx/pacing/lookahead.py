@@ -6,7 +6,10 @@ from collections.abc import Callable
 
 from irlx.blocks import (
     AskClearance,
+    AskInput,
+    AskInputChange,
     AskManipulability,
+    AskPause,
     AskPose,
     AskStandstill,
     Block,
@@ -50,7 +53,7 @@ class Lookahead:
             self._waiting.append(block)
             return []
         if not isinstance(block, MoveBlock):
-            return [*self.stop(block.origin, "the robot has to stand there"), (block,)]
+            return [*self.stop(block.origin, _STANDS), (block,)]
         groups = []
         if self._waiting:
             apart = _apart(self._last_move, block) or (_TOO_MANY if self._moves >= WINDOW else "")
@@ -68,6 +71,10 @@ class Lookahead:
             return self.stop(question.origin, why) if self._obstacles_move else []
         if isinstance(question, AskStandstill):
             return self.stop(question.origin, "what comes next waits until the moves are done")
+        if isinstance(question, AskPause):
+            return self.stop(question.origin, _STANDS)
+        if isinstance(question, AskInput | AskInputChange):
+            return self.stop(question.origin, "an input is read at its moment, with the robot at rest")
         return self.stop(question.origin, "the answer depends on where the robot stands")
 
     def stop(self, where: Origin | None, why: str) -> list[tuple[Block, ...]]:
@@ -89,6 +96,7 @@ class Lookahead:
         self._notes.add(lost_blend(self._locate(move.origin), why, stopping, what="this stops it"))
 
 
+_STANDS = "the robot has to stand there"
 _TOO_MANY = f"at most {WINDOW} moves are joined"
 
 

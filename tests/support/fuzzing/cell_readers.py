@@ -221,7 +221,7 @@ class InputsReader(Reader):
     def read(self, content: bytes, thorough: bool) -> tuple[bool, list[Diagnostic]]:
         (path := self.folder / "inputs.csv").write_bytes(content)
         try:
-            traces = read_input_file(path)
+            traces = read_input_file(path).traces
         except CellError as error:
             return False, list(error.diagnostics)
         for trace in traces.values():

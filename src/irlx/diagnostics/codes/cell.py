@@ -44,8 +44,8 @@ CELL = (
     ),
     error(
         "IRL617",
-        "no constraint is registered as '{use}'{near}; known are: {known}",
-        "irlx.register it before the run, or name its module with --plugin",
+        "no constraint is registered as '{use}'{near}",
+        "known are: {known}; irlx.register it before the run, or name its module with --plugin",
     ),
     error(
         "IRL618",
@@ -137,5 +137,10 @@ CELL = (
         "IRL647",
         "{key}: the link {link} moves with the tool frame {tip} at all times: no axis lies between them",
         "bind the frame to a link of another hand",
+    ),
+    error(
+        "IRL649",
+        "neither the program nor the cell has an input '{name}'{near}",
+        "inputs are {known}; what is given for another one would count for nothing",
     ),
 )

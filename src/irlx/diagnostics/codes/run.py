@@ -67,8 +67,9 @@ RUN = (
     ),
     error(
         "IRL530",
-        "nothing says what the input {name} ({port}) is{near}; inputs known: {known}",
-        "give it a trace in [signals.inputs] of the cell or with --inputs, or a function in Python",
+        "nothing says what the input {name} ({port}) is{near}",
+        "give it a trace in [signals.inputs] of the cell or with --inputs, or a function in Python; traces "
+        "there are: {known}",
     ),
     error("IRL531", "the input {name} is {value} at {time} s, which is no {kind}"),
     error(
@@ -94,8 +95,8 @@ RUN = (
     ),
     error(
         "IRL572",
-        "the cell has no robot '{name}'{near}; its robot is {known}",
-        "name that robot, or give the cell of the other one",
+        "the cell has no robot '{name}'{near}",
+        "its robot is {known}: name that robot, or give the cell of the other one",
     ),
     error(
         "IRL573",
