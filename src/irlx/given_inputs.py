@@ -23,7 +23,7 @@ InputsGiven = InputFunction | Mapping[str, Sequence[tuple[float, float]]] | str 
 
 
 def inputs_of(program: Program | Recorded, cell: Cell, given: InputsGiven) -> Inputs:
-    """What inputs say: those that are `given`, by a function, traces by name or a CSV, that; others as in the cell.
+    """What inputs say: first `given`, a function, traces by name or a CSV, of the others what the cell says.
 
     Raises CellError for a file that is no such CSV, IrlxError: IRL006 for what says nothing of inputs, IRL649
     for a name that is none of an input of the program or the cell. A recording knows its inputs by their

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from irlx.blocks import Block, Origin
 from irlx.diagnostics import Diagnostic, IrlxError, report
+from irlx.given_inputs import InputsGiven
 from irlx.given_values import check_count
 from irlx.interpreter.channels.pieces import InputGiven
-from irlx.given_inputs import InputsGiven
 from irlx.job import CellGiven, Job, PathLike, prepare
 from irlx.language.suppression import without_ignored
 from irlx.pacing.correction.corrector import Senses
@@ -76,7 +76,7 @@ def run(
     `cell`: path of the cell file, by default found beside the program, or a cell that has been loaded;
     `tick_ms` overrides the cell's tick; `explain_tick` asks for `Run.explanation` of that tick; a move that
     limits make more than `max_slow` times as long as programmed is an error, and so are more than `max_steps`
-    statements (by default 10,000,000); `inputs` as `InputsGiven`, each in place of the cell's; each PAUSE lasts
+    statements (by default 10,000,000); `inputs` as `InputsGiven`, each instead of the cell's; a PAUSE lasts
     `pause_s` s, rounded up to whole ticks. With `write_data`, values of data lists that the program has
     changed are written to their files after a complete run.
     `files`: the folder that OPEN finds and makes files in, by default that of the program; `input`: what

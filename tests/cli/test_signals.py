@@ -206,8 +206,8 @@ def test_every_name_that_nothing_has_is_told_at_its_line(tmp_path: Path) -> None
 
 def test_names_of_ports_that_only_a_run_knows_are_let_pass(tmp_path: Path) -> None:
     """As those of modules, of ports used by their names, and of routines' own inputs are known."""
-    module = "MODULE m;\nEXPORT show;\nVAR INPUT INT: level AT 7;\nPROCEDURE show;\nBEGIN\n  WRITELN(level);\nENDPROC;"
-    (tmp_path / "m.irl").write_text(f"{module}\nENDMODULE\n", encoding="utf-8")
+    module = "EXPORT show;\nVAR INPUT INT: level AT 7;\nPROCEDURE show;\nBEGIN\n  WRITELN(level);\nENDPROC;"
+    (tmp_path / "m.irl").write_text(f"MODULE m;\n{module}\nENDMODULE\n", encoding="utf-8")
     declared = "FROM m IMPORT show; CONST INT: n := 5; VAR INPUT BOOL: part AT n + 1; OUTPUT BOOL: lamp AT 1;"
     text = program("  lamp := IN_9;\n  IF part THEN look; show; ENDIF;", declared + LOOK)
     given = {"IN_6": 1, "level": 2, "AIN_7": 2, "in_9": 0, "inside": 1, "AIN_8": 1.5}

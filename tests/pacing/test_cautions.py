@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from irlx.blocks import Origin
 from irlx.diagnostics import Place
+from irlx.diagnostics.digits import plain
 from irlx.pacing.cautions import NEAR_SINGULAR, near_singular, slowed
+from irlx.pacing.rows import handed_out
+from irlx.report.events import slowed_events
 from irlx.robot.kinematics import Kinematics
 
 PLACE = Place("t.irl")
@@ -32,6 +38,33 @@ def test_a_line_that_one_slide_makes_slow(kit) -> None:
     assert data["held"] == "y and its speed limit 400 mm/s"
     assert float(data["achieved"]) == pytest.approx(400.0, rel=1e-2)
     assert (data["requested"], data["length"]) == ("500 mm/s", "600 mm")
+
+
+def test_a_stretch_over_joined_moves_is_told_of_what_those_should_take(kit) -> None:
+    """The line of the test above as three moves, the middle one 1 mm of it: its own time is no measure.
+
+    What is slow, from 0.04 m to 0.56 m, should take 1.05 s of the 1.45 s.
+    """
+    shop = kit.shop(limits=kit.limits(5.0, one_slow_joint(SLIDE, 0.4)))
+    rows = shop.line(kit.beyond(0.0, 0.6, 0.0))
+    (stretch,) = rows.path.slowings
+    worst = replace(rows.path, slowings=(replace(stretch, s=0.3005),))
+    blocks = [replace(rows.block, origin=Origin("t.irl", 0, 1, line)) for line in (7, 8, 9)]
+    parts = handed_out(replace(rows, path=worst), blocks, (0.3, 0.301, 0.6))
+    assert parts[1] is not None
+    found = slowed(parts[1], Kinematics(kit.gantry()), shop.limits, shop.dt, PLACE)
+    assert found is not None
+    assert found.weight == pytest.approx(0.25 / 1.05, rel=0.1)
+    assert found.finding.data["share"] == f"{100.0 * found.weight:.0f}"
+    assert "make the joined moves (lines 7 to 9) 0.2" in found.finding.message
+    assert ": at 0.5 of 1 mm of this one the tool" in found.finding.message
+    (event,) = slowed_events(parts[1], shop.limits, [f"j{k}" for k in range(7)], shop.dt)
+    assert (event.line, event.first_line, event.last_line) == (8, 7, 9)
+
+
+@pytest.mark.parametrize(("value", "words"), [(0.034, "0.034"), (9.87, "9.9"), (11.2, "11"), (26e3, "26000")])
+def test_shares_are_told_in_plain_digits(value: float, words: str) -> None:
+    assert plain(value, 2) == words
 
 
 def test_a_turn_that_one_joint_makes_slow_to_start(kit) -> None:

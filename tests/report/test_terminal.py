@@ -45,10 +45,13 @@ def active(joint: str, kind: str, side: str, first: int, last: int) -> LimitActi
     return LimitActive(joint, kind, side, first, last, first / 100, last / 100)
 
 
-def slow(line: int, first: int, lost: float, joint: str = "a1") -> Slowed:
+def slow(line: int, first: int, lost: float, joint: str = "a1", last: int = 0) -> Slowed:
+    last = last or line
     kind, bound = ("speed", radians(20.0)) if joint else ("", 0.0)
     times = first / 100, (first + 50) / 100
-    return Slowed(line, first, first + 50, *times, 0.1, 2.0, False, 1.0, 0.25, joint, kind, bound, lost)
+    return Slowed(
+        line, first, first + 50, *times, 0.1, 2.0, False, 1.0, 0.25, joint, kind, bound, lost, line, last
+    )
 
 
 FULL = replace(
@@ -64,7 +67,7 @@ FULL = replace(
         active("a1", "acceleration", "lower", 30, 30),
         active("rail", "position", "lower", 40, 49),
     ),
-    slowed=(slow(4, 10, 0.31), slow(5, 60, 0.05, "")),
+    slowed=(slow(4, 10, 0.31, last=5), slow(5, 60, 0.05, "")),
     closure=Closure("a2", radians(72.7)),
     returns=(
         Return(9, 80, 3, (0.0, 0.0, 1e-9), ""),
@@ -101,8 +104,8 @@ def test_a_run_with_all_there_is_to_tell() -> None:
         "p.irl: complete, verified, 1 s, slowed by 0.36 s, nearest 27.5 mm",
         "moves       2 (1 planned as a whole to keep limits)",
         "slowed      0.36 s longer than programmed at 2 places, the path is kept",
-        "            line 4  0.1-0.6 s  +0.31 s  250 of 1000 mm/s  a1: 20 deg/s",
-        "            line 5  0.6-1.1 s  +0.05 s  250 of 1000 mm/s",
+        "            lines 4-5  0.1-0.6 s  +0.31 s  250 of 1000 mm/s  a1: 20 deg/s",
+        "            line 5     0.6-1.1 s  +0.05 s  250 of 1000 mm/s",
         "path error  1.2e-15 m, 0 rad at worst",
         "limit use   position   100 %  rail  -500 of -500 mm   tick 7",
         "            speed     99.5 %  a1    19.9 of 20 deg/s  tick 31",

@@ -42,6 +42,8 @@ def slowed(shown, first, last):
     numbers = dict.fromkeys(("first_time", "last_time", "way", "length", "requested", "achieved"), 0.0)
     event = Slowed(
         line=6,
+        first_line=6,
+        last_line=6,
         first_tick=first,
         last_tick=last,
         turns=False,

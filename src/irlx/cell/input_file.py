@@ -19,7 +19,7 @@ _WORDS = {"true": 1.0, "false": 0.0}
 
 @dataclass(frozen=True)
 class InputFile:
-    """Traces by casefolded name, times (s) with the value from each on; `places` of their first lines, as spelt."""
+    """Traces by casefolded name, and the place of the first line of each, by its name as spelt."""
 
     traces: dict[str, tuple[tuple[float, float], ...]]
     places: dict[str, Place]

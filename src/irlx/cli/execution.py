@@ -20,7 +20,7 @@ def add_execution_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--inputs",
         metavar="CSV",
-        help="what inputs say: lines of time in s, input, value (others: as in the cell)",
+        help="what inputs say: lines of time in s, input, value (what it lacks: as in the cell)",
     )
     parser.add_argument(
         "--files", metavar="DIR", help="folder in which OPEN finds and makes files (default: the program's)"

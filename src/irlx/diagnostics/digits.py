@@ -5,6 +5,11 @@ from __future__ import annotations
 _MOST_DIGITS = 17
 
 
+def plain(value: float, digits: int) -> str:
+    """A number in so many significant digits, or in all before its point, never with an exponent above."""
+    return f"{value:.0f}" if abs(value) >= 10.0 ** (digits - 1) else f"{value:.{digits}g}"
+
+
 def told_apart(*values: float, digits: int = 6) -> list[str]:
     """Texts of some numbers, in `digits` significant digits, or more where two of them would read alike.
 

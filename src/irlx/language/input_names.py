@@ -34,7 +34,7 @@ class InputNames:
 
 
 def input_names(roots: Iterable[tree.Node]) -> InputNames:
-    """Names of the inputs that a program and its modules declare, of their ports, and of ports that are used."""
+    """Names of the inputs that a program and its modules declare, their ports, and ports that are used."""
     found: dict[str, None] = {}
     computed = set[str]()
     for root in roots:

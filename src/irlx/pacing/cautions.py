@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.diagnostics import Diagnostic, Place, report
+from irlx.diagnostics.digits import plain
 from irlx.pacing.impossible import joint_value
 from irlx.pacing.rows import MotionRows, PathPart
 from irlx.pacing.slowdown.clock_bounds import Governor
@@ -29,6 +30,9 @@ NEAR_SINGULAR = 0.02
 some direction of the tool costs the joints fifty times the motion of another."""
 
 
+_THIS = "this move"
+
+
 @dataclass(frozen=True)
 class Caution:
     """A finding on a move, and how bad it is: the larger the worse, comparable within a code."""
@@ -45,20 +49,40 @@ def slowed(
     if path is None or not path.slowings:
         return None
     lost = sum(slowing.lost for slowing in path.slowings)
-    share = lost / max(rows.ticks * dt - lost, dt)
+    share = lost / max(_programmed(rows, path), dt)
     if share < LEAST_LOSS:
         return None
     costliest = max(path.slowings, key=lambda slowing: slowing.lost)
-    unit, scale = _unit(path)
+    (unit, scale), what = _unit(path), _what(path)
     data: dict[str, Any] = {
-        "lost": f"{lost:.2g}",
-        "share": f"{100.0 * share:.2g}",
-        "achieved": f"{costliest.achieved * scale:.4g}",
-        "requested": f"{costliest.requested * scale:.4g} {unit}/s",
+        "what": what,
+        "lost": plain(lost, 2),
+        "share": plain(100.0 * share, 2),
+        "achieved": plain(costliest.achieved * scale, 4),
+        "requested": f"{plain(costliest.requested * scale, 4)} {unit}/s",
         "held": _held(costliest, rows.limits or own, kinematics),
+        "of": "" if what == _THIS else " of this one",
         **_at(costliest.s, rows, path),
     }
     return Caution(report("IRL445", place, **data), share)
+
+
+def _programmed(rows: MotionRows, path: PathPart) -> float:
+    """Time, s, that a move should take, with its neighbours as far as its slow stretches reach."""
+    spans = [slowing.span for slowing in path.slowings]
+    first = min([path.begin, *(first for first, _ in spans)])
+    last = max([path.begin + rows.length, *(last for _, last in spans)])
+    begin, end = path.law.times_at(np.array([first, last]))
+    return float(end - begin)
+
+
+def _what(path: PathPart) -> str:
+    """What is slow: the move, or those of some lines that are joined."""
+    lines = [slowing.lines for slowing in path.slowings if slowing.lines is not None]
+    if not lines:
+        return _THIS
+    first, last = min(first for first, _ in lines), max(last for _, last in lines)
+    return _THIS if first == last else f"the joined moves (lines {first} to {last})"
 
 
 def near_singular(rows: MotionRows, kinematics: Kinematics, place: Place) -> Caution | None:
@@ -83,7 +107,7 @@ def near_singular(rows: MotionRows, kinematics: Kinematics, place: Place) -> Cau
         return None
     data: dict[str, Any] = {
         "sigma": f"{values[worst, -1]:.2g}",
-        "share": f"{100.0 * shares[worst]:.2g}",
+        "share": plain(100.0 * float(shares[worst]), 2),
         **_at(path.demands[worst].s, rows, path),
     }
     return Caution(report("IRL446", place, **data), -float(shares[worst]))

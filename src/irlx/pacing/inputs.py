@@ -73,9 +73,8 @@ class Inputs:
 
     def _trace(self, names: Sequence[str]) -> Trace | None:
         keys = [name.casefold() for name in names]
-        return next(
-            (found[key] for found in (self.traces, self.others) for key in keys if key in found), None
-        )
+        tables = (self.traces, self.others)
+        return next((traces[key] for traces in tables for key in keys if key in traces), None)
 
 
 def answer_of_inputs(

@@ -113,10 +113,24 @@ def handed_out(
     cuts = [int(np.argmin(np.abs(s - end))) + 1 for end in ends[:-1]]
     lasts = np.maximum.accumulate([0, *cuts, len(rows)]).tolist()
     begins = [0.0, *ends]
+    if rows.path is not None and rows.path.slowings:
+        told = tuple(_with_lines(found, blocks, lasts) for found in rows.path.slowings)
+        rows = replace(rows, path=replace(rows.path, slowings=told))
     return [
         _part(rows, block, (first, last), (begins[k], begins[k + 1])) if last > first else None
         for k, (block, (first, last)) in enumerate(zip(blocks, pairwise(lasts), strict=True))
     ]
+
+
+def _with_lines(found: Slowing, blocks: Sequence[MoveBlock], lasts: Sequence[int]) -> Slowing:
+    """A slowed stretch with the lines of the moves in whose rows it lies, those of the last one's file."""
+    origins = [
+        block.origin
+        for block, (first, last) in zip(blocks, pairwise(lasts), strict=True)
+        if first <= found.last_row and found.first_row < last
+    ]
+    lines = [origin.line for origin in origins if origin.file == origins[-1].file]
+    return replace(found, lines=(min(lines), max(lines))) if lines else found
 
 
 def _part(rows: MotionRows, block: MoveBlock, span: tuple[int, int], way: tuple[float, float]) -> MotionRows:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +24,9 @@ class Slowing:
 
     Rows `first_row` .. `last_row` of the motion (from 0). At `s` (path parameter) most rate is missing:
     `achieved` instead of `requested` (per s), because of the `joint` (from 0; -1 none) and its `governor`,
-    SPEED or ACCELERATION. `lost` is the time the stretch costs, s.
+    SPEED or ACCELERATION. `lost` is the time the stretch costs, s; `span` the path parameters between which
+    it does. `lines` of the program are the first and the last one of the moves that it reaches over where
+    several are joined.
     """
 
     first_row: int
@@ -34,6 +37,8 @@ class Slowing:
     governor: Governor
     joint: int
     lost: float
+    span: tuple[float, float] = (inf, -inf)
+    lines: tuple[int, int] | None = None
 
 
 def slowings(clock: PlannedClock, rates: Array, factor: float, dt: float, rows: int) -> tuple[Slowing, ...]:
@@ -76,6 +81,7 @@ def _slowing(
         Governor(int(clock.governor[worst])),
         int(clock.joint[worst]),
         float(times[behind] - times[before] - programmed),
+        (float(clock.s[before]), float(clock.s[behind])),
     )
 
 

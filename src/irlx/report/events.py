@@ -44,7 +44,8 @@ class Slowed:
 
     `line` of the move in the program; `way` of `length` (m, or rad where the tool only `turns`) where most
     speed is missing: `achieved` instead of `requested` (m/s or rad/s), for the `kind` (speed or acceleration)
-    limit `bound` of `joint` ('' where no single joint decides); `lost` time, s.
+    limit `bound` of `joint` ('' where no single joint decides); `lost` time, s. Of moves that are joined it
+    reaches over those of the lines from `first_line` to `last_line`.
     """
 
     line: int
@@ -61,6 +62,15 @@ class Slowed:
     kind: str
     bound: float
     lost: float
+    first_line: int
+    last_line: int
+
+    @property
+    def lines(self) -> str:
+        """Those lines in words."""
+        if self.first_line == self.last_line:
+            return f"line {self.line}"
+        return f"lines {self.first_line}-{self.last_line}"
 
     def to_plain(self) -> dict[str, object]:
         """The event as JSON-able data."""
@@ -105,6 +115,8 @@ def _slowed(
         kind=kind,
         bound=bound,
         lost=slowing.lost,
+        first_line=rows.block.origin.line if slowing.lines is None else slowing.lines[0],
+        last_line=rows.block.origin.line if slowing.lines is None else slowing.lines[1],
     )
 
 

@@ -182,7 +182,7 @@ def _slowing(event: Slowed, units: dict[str, str]) -> tuple[str, ...]:
     requested, achieved = (_rate(value * scale) for value in (event.requested, event.achieved))
     bound = f"{joint_value(event.bound, units.get(event.joint, 'rad'), PER.get(event.kind, ''))}"
     return (
-        f"line {event.line}",
+        event.lines,
         f"{event.first_time:.6g}-{event.last_time:.6g} s",
         f"+{event.lost:.3g} s",
         f"{achieved} of {requested} {unit}/s",

@@ -72,13 +72,15 @@ def test_limits_by_what_was_in_force(gathering):
 @pytest.mark.parametrize("joint", ["slide", ""])
 def test_slowed(gathering, joint):
     way = 0.25, 1.0, False, 1.0, 0.5
-    event = Slowed(7, 2, 9, 0.02, 0.09, *way, joint, "speed" if joint else "", 0.1 if joint else 0.0, 0.03)
+    limit = (joint, "speed" if joint else "", 0.1 if joint else 0.0)
+    event = Slowed(7, 2, 9, 0.02, 0.09, *way, *limit, 0.03, 5 if joint else 7, 7)
     (found,) = events_of(gathering, [event])
     assert (found["kind"], found["line"], found["joint"]) == ("slowed", 7, 1 if joint else None)
     assert found["label"] == ("slowed by slide speed" if joint else "slowed")
+    over = " (lines 5 to 7)" if joint else ""
     why = ": slide speed limit 100 mm/s" if joint else ""
     assert found["text"] == (
-        "the tool is slower than programmed, 0.02 to 0.09 s, by 0.03 s; slowest at 250 mm of its way, "
+        f"the tool is slower than programmed{over}, 0.02 to 0.09 s, by 0.03 s; slowest at 250 mm of its way, "
         f"500 of 1000 mm/s{why}"
     )
 

@@ -142,8 +142,8 @@ PACING = (
     ),
     warning(
         "IRL445",
-        "limits make this move {lost} s longer than programmed, {share} %: at {way} of {length} the tool has "
-        "{achieved} of {requested}, for {held}",
+        "limits make {what} {lost} s longer than programmed, {share} %: at {way} of {length}{of} the tool "
+        "has {achieved} of {requested}, for {held}",
         "program a lower SPEED or ACC, widen the limit, or start the move from another posture",
     ),
     warning(

@@ -82,7 +82,8 @@ def _slowing(event: Slowed, units: Mapping[str, str]) -> str:
         bound = joint_value(event.bound, units[event.joint], PER[event.kind])
         why = f": {event.joint} {event.kind} limit {bound}"
     times = _times(event.first_time, event.last_time)
-    words = f"the tool is slower than programmed, {times}, by {event.lost:.3g} s"
+    over = "" if event.first_line == event.last_line else f" (lines {event.first_line} to {event.last_line})"
+    words = f"the tool is slower than programmed{over}, {times}, by {event.lost:.3g} s"
     return f"{words}; slowest at {way} {unit} of its way, {achieved} of {requested} {unit}/s{why}"
 
 
