@@ -132,6 +132,42 @@ def test_it_reads_in_the_folder_that_it_is_given(tmp_path, capsys) -> None:
     capsys.readouterr()
 
 
+PLACES = """PROGRAM t;
+VAR INT: i;
+PROCEDURE place(REAL: x);
+BEGIN
+  MOVE {move} POSE((x, 200, 324), ORIZYX(0, 180, 0));
+ENDPROC;
+BEGIN
+  MOVE LIN POSITION(441, 200, 324);
+  FOR i := 0 TO {last} DO
+    place({first} + 100 * i);
+    place(441);
+  ENDFOR;
+ENDPROGRAM;
+"""
+
+
+@pytest.mark.parametrize(("move", "code"), [("PTP", "IRL522"), ("LIN", "IRL520")])
+def test_which_targets_of_a_line_cannot_be_reached(tmp_path, move, code) -> None:
+    """The wrist comes 0.76 m from the shoulder: of 400, 500, .. 900 mm the last two are too far."""
+    (tmp_path / "t.toml").write_text('[robot]\nmodel = "arm7"\n')
+    (tmp_path / "t.irl").write_text(PLACES.format(move=move, first=400, last=5))
+    found = [one for one in irlx.check(tmp_path / "t.irl", motion=True) if one.is_error]
+    assert [(one.code, one.place.line) for one in found if one.place] == [(code, 5)]
+    (one,) = found
+    assert "(800, 200, 324) mm" in one.message
+    assert one.message.endswith("; so it is once more, for (900, 200, 324) mm")
+
+
+def test_a_line_that_fails_all_the_time_is_given_up(tmp_path) -> None:
+    (tmp_path / "t.toml").write_text('[robot]\nmodel = "arm7"\n')
+    (tmp_path / "t.irl").write_text(PLACES.format(move="PTP", first="4E10", last=99))
+    (one,) = [one for one in irlx.check(tmp_path / "t.irl", motion=True) if one.is_error]
+    assert "; so it is 23 more times at least, for (4" in one.message
+    assert " and 15 others" in one.message
+
+
 def test_nobody_is_asked_on_standard_in(tmp_path) -> None:
     (tmp_path / "s.toml").write_text('[robot]\nmodel = "arm7"\n')
     (tmp_path / "s.irl").write_text("PROGRAM s;\nVAR INT: i;\nBEGIN\nREAD(i);\nWRITE(i);\nENDPROGRAM;\n")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import ceil
@@ -20,6 +21,7 @@ from irlx.blocks import (
 )
 from irlx.diagnostics import Diagnostic, IrlxError, Place, report
 from irlx.job import Job
+from irlx.language.words import count
 from irlx.pacing.beyond import needs_its_start
 from irlx.pacing.cautions import Caution, near_singular, slowed
 from irlx.pacing.errors import PacingError
@@ -30,6 +32,12 @@ from irlx.pipeline import Execution
 
 ROW_TIME = 0.04
 """Time that a row of a dry run stands for at least, s, but of a tick that is long itself `LEAST_TICKS`."""
+
+MOST_FAILURES = 24
+"""So often a line is tried again that fails, in a loop or a procedure: to say why takes time."""
+
+MOST_TARGETS = 8
+"""So many targets are listed of a line that fails more than once."""
 
 LEAST_TICKS = 5
 SPACING = Spacing(6.0, 16)
@@ -44,7 +52,8 @@ def dry_run(job: Job) -> list[Diagnostic]:
     """Findings on the motion of a job: errors that a run would end in, and cautions; raises none of them.
 
     A run ends at its first error; this goes on behind a move that cannot be done, from a posture at its
-    target, so that more than one is found. Every finding is told once for each place, at its worst.
+    target, so that more than one is found. Every finding is told once for each place: cautions at their
+    worst, errors as they come first, with how many more there are.
     """
     execution = _DryExecution(job, resolution_of(job.tick_ns / 1e9))
     try:
@@ -64,7 +73,9 @@ class _DryExecution(Execution):
         self.channels = job.channels.in_memory(None)
         self._errors: dict[tuple[str, Place | None], Diagnostic] = {}
         self._cautions: dict[tuple[str, Place], Caution] = {}
-        self._failed: set[Origin] = set()
+        self._more: dict[tuple[str, Place | None], list[str]] = {}
+        """Targets of the same errors at the same place that came later, '' where they do not tell theirs."""
+        self._failures: Counter[Origin] = Counter()
         self._lost: Place | None = None
         """The move since which nobody knows where the robot stands."""
 
@@ -72,12 +83,19 @@ class _DryExecution(Execution):
     def findings(self) -> list[Diagnostic]:
         """Everything found so far."""
         cautions = [caution.finding for caution in self._cautions.values()]
-        return list(dict.fromkeys([*self._errors.values(), *self.warnings, *cautions]))
+        errors = [_with_more(one, self._more.get(key, [])) for key, one in self._errors.items()]
+        return list(dict.fromkeys([*errors, *self.warnings, *cautions]))
 
     def tell(self, found: Sequence[Diagnostic]) -> None:
-        """Note errors, each once for its place."""
-        for one in found:
-            self._errors.setdefault((one.code, one.place), one)
+        """Note errors, each once for its place, and how many came there later."""
+        for key, one in {(one.code, one.place): one for one in reversed(found)}.items():
+            if key in self._errors:
+                self._more.setdefault(key, []).append(str(one.data.get("target", "")))
+            self._errors.setdefault(key, one)
+
+    def _is_hopeless(self, origin: Origin) -> bool:
+        """Whether a line has failed so often that it is not tried again."""
+        return self._failures[origin] >= MOST_FAILURES
 
     def consider(self, executed: Executed) -> None:
         """Note what is to be said of a block that was carried out."""
@@ -111,7 +129,7 @@ class _DryExecution(Execution):
         for group in groups:
             left: Sequence[Block] = group
             while left:
-                if self._lost is not None or left[0].origin in self._failed:
+                if self._lost is not None or self._is_hopeless(left[0].origin):
                     self._pass_by(left[0])
                     left = left[1:]
                     continue
@@ -138,7 +156,7 @@ class _DryExecution(Execution):
         if not isinstance(block, MoveBlock):
             raise error
         self.tell(error.diagnostics)
-        self._failed.add(block.origin)
+        self._failures[block.origin] += 1
         self._stand_beyond(block)
 
     def _stand_beyond(self, move: MoveBlock) -> None:
@@ -149,7 +167,7 @@ class _DryExecution(Execution):
             self._lost = self._locate(move.origin)
 
     def _pass_by(self, block: Block) -> None:
-        """A block that has failed before, or comes while nobody knows where the robot stands.
+        """A block that has failed too often, or comes while nobody knows where the robot stands.
 
         Of a move only the target counts then: where that can be reached, all that follows is looked at
         again. Raises PacingError, IRL447, where all that follows depends on the posture.
@@ -158,7 +176,7 @@ class _DryExecution(Execution):
             self._without_posture(block)
         elif self._lost is not None and needs_its_start(block):
             return
-        elif block.origin in self._failed:
+        elif self._is_hopeless(block.origin):
             self._stand_beyond(block)
         else:
             self._look_for_robot(block)
@@ -173,7 +191,7 @@ class _DryExecution(Execution):
                 self._lost = None
         except IrlxError as error:
             self.tell(error.diagnostics)
-            self._failed.add(move.origin)
+            self._failures[move.origin] += 1
 
     def _without_posture(self, block: Block) -> None:
         if isinstance(block, CyclicBlock) and block.active:
@@ -185,3 +203,17 @@ class _DryExecution(Execution):
     def _end(self, origin: Origin) -> PacingError:
         line = self._lost.line if self._lost is not None else None
         return PacingError(report("IRL447", self._locate(origin), line=line))
+
+
+def _with_more(found: Diagnostic, targets: Sequence[str]) -> Diagnostic:
+    """An error with what is to be said of the same one at the same place later on."""
+    if not targets:
+        return found
+    known = list(dict.fromkeys(target for target in targets if target))
+    others = len(known) - MOST_TARGETS
+    listed = ", ".join(known[:MOST_TARGETS]) + (f" and {count(others, 'other')}" if others > 0 else "")
+    times = "once more" if len(targets) == 1 else f"{len(targets)} more times"
+    if len(targets) + 1 >= MOST_FAILURES:
+        times = f"{len(targets)} more times at least"
+    words = f"; so it is {times}{', for ' + listed if listed else ''}"
+    return replace(found, message=found.message + words)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares, lsq_linear
 
-from irlx.transform.least_squares import least_squares_in_bounds
+from irlx.transform.least_squares import least_squares_from, least_squares_in_bounds
 
 
 def cost(residual, x):
@@ -105,3 +105,13 @@ def test_few_evaluations_do_where_the_linear_model_foretells_half():
         found = least_squares_in_bounds(curved, np.zeros(9), np.full(9, -9.0), np.full(9, 9.0))
         np.testing.assert_allclose(matrix @ np.sin(found), aim, rtol=0, atol=1e-11)
     assert len(asked) <= 8 * 7
+
+
+def test_a_damping_that_is_lost_in_rounding():
+    """Two equal rows, very large: with c the matrix is singular in floats; 0 is reached where sum x = 1."""
+    residual = linear(1e9 * np.ones((2, 3)), 1e9 * np.ones(2))
+    bounds = -np.ones(3), np.ones(3)
+    alone = least_squares_in_bounds(residual, np.zeros(3), *bounds)
+    together = dict(least_squares_from([residual] * 4, [0.1 * k * np.ones(3) for k in range(4)], *bounds))
+    for found in (alone, *together.values()):
+        assert np.sum(found) == pytest.approx(1.0)

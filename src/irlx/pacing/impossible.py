@@ -20,6 +20,7 @@ from irlx.pacing.row_check import BrokenBound
 from irlx.pacing.slowdown.clock_bounds import Governor
 from irlx.pacing.slowdown.ladder import TimedCurve
 from irlx.pacing.slowdown.planned import Refusal
+from irlx.pacing.target_words import target_words
 from irlx.pacing.too_near import told
 from irlx.pacing.walk import Halt
 from irlx.promises import FOLLOWED_TURN, PATH_ORIENTATION, PATH_POSITION
@@ -96,6 +97,7 @@ def explain_halt(
     held = _held_joints(halt, around)
     data: dict[str, Any] = {
         "tick": halt.demand.tick,
+        "target": target_words(path.end_position),
         "way": f"{halt.demand.s * scale:.6g}",
         "length": f"{path.length * scale:.6g} {unit}",
         "held": "; ".join(held) if held else _nearest_to_limit(solution.q, around),

@@ -15,6 +15,7 @@ from irlx.pacing.options import LimitsInForce
 from irlx.pacing.posture_left import beyond_limits
 from irlx.pacing.reconfigure import settled_konf
 from irlx.pacing.situation import Situation
+from irlx.pacing.target_words import target_words
 from irlx.transform.posture_search import nearest_posture, posture_near
 
 Array = NDArray[np.float64]
@@ -49,7 +50,10 @@ def posture_of_pose(
     position = np.array(target.position)
     farthest = float(np.max(np.abs(position)))
     if farthest > FARTHEST_TARGET:
-        raise PacingError(report("IRL522", place, distance=f"{farthest * 1000.0:.6g}", angle="0"))
+        told = target_words(position)
+        raise PacingError(
+            report("IRL522", place, target=told, distance=f"{farthest * 1000.0:.6g}", angle="0")
+        )
     cyclic = situation.options.cyclic_posture
     drawn_to = next(posture for posture in (near, cyclic, q) if posture is not None)
     start = np.where(situation.free, drawn_to, q)
@@ -66,5 +70,8 @@ def posture_of_pose(
         check_followed(search.misses, AskedPose(rotation, position, place), kinematics)
     if search.q is None:
         distance, angle = search.nearest.distance * 1000.0, np.degrees(search.nearest.angle)
-        raise PacingError(report("IRL522", place, distance=f"{distance:.6g}", angle=f"{angle:.4g}"))
+        told = target_words(position)
+        raise PacingError(
+            report("IRL522", place, target=told, distance=f"{distance:.6g}", angle=f"{angle:.4g}")
+        )
     return search.q

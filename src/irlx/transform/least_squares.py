@@ -114,7 +114,13 @@ def _step(search: _Search) -> Array:
 
 def _damped(r: Array, derivative: Array, damping: Array) -> Array:
     """-J' (J J' + C)^-1 r."""
-    return np.asarray(-(derivative.T @ np.linalg.solve(derivative @ derivative.T + damping, r)))
+    squares = derivative @ derivative.T + damping
+    try:
+        solved = np.linalg.solve(squares, r)
+    except np.linalg.LinAlgError:
+        # Far off all that can be reached derivatives are so large that a small damping is lost in rounding.
+        solved = np.linalg.lstsq(squares, r, rcond=None)[0]
+    return np.asarray(-(derivative.T @ solved))
 
 
 def _steps(searches: Sequence[_Search]) -> Array:
@@ -139,5 +145,8 @@ def _steps(searches: Sequence[_Search]) -> Array:
 
 def _damped_each(r: Array, derivative: Array, damping: Array) -> Array:
     """`_damped` of each of several rows (K, m), matrices (K, m, n) and dampings (K, m, m)."""
-    solved = np.linalg.solve(derivative @ derivative.transpose(0, 2, 1) + damping, r[..., None])[..., 0]
+    try:
+        solved = np.linalg.solve(derivative @ derivative.transpose(0, 2, 1) + damping, r[..., None])[..., 0]
+    except np.linalg.LinAlgError:
+        return np.array([_damped(*one) for one in zip(r, derivative, damping, strict=True)])
     return np.asarray(-(solved[:, None] @ derivative)[:, 0])

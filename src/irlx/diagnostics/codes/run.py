@@ -32,19 +32,19 @@ RUN = (
     error("IRL515", "the frame '{name}' moves with the link {link}, which {robot} does not have{near}"),
     error(
         "IRL520",
-        "the tool cannot follow this move beyond {way} of {length} (tick {tick}) at any speed: {held}; "
-        "smallest singular value {sigma}; {missing}",
+        "the tool cannot follow this move beyond {way} of {length} (tick {tick}), on its way to {target}, at "
+        "any speed: {held}; smallest singular value {sigma}; {missing}",
         "widen the limit, or start the move from another posture (RECONFIGURATION before it)",
     ),
     error(
         "IRL521",
-        "the tool cannot reach its pose at {way} of {length} (tick {tick}): {held}; "
+        "the tool cannot reach its pose at {way} of {length} (tick {tick}), on its way to {target}: {held}; "
         "smallest singular value {sigma}; {missing}",
         "check the target, and the frame and units it is given in",
     ),
     error(
         "IRL522",
-        "no posture within the limits reaches the target of this PTP; the nearest one found leaves "
+        "no posture within the limits reaches the target {target}; the nearest one found leaves "
         "{distance} mm and {angle} deg",
         "check the target, and the frame and units it is given in",
     ),
