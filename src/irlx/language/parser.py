@@ -16,7 +16,7 @@ from irlx.language.parsing.missing_ends import follow_hints
 from irlx.language.parsing.misspelling import misspelt_alone
 from irlx.language.parsing.nesting import too_deep
 from irlx.language.parsing.recovery import close_all, missing_semicolon, recover
-from irlx.language.parsing.repairs import ends_with_comma, is_decimal_comma
+from irlx.language.parsing.repairs import decimal_comma, ends_with_comma, number_with_comma
 from irlx.language.token import Token
 from irlx.language.tree import DataList, Module, Program
 
@@ -190,11 +190,8 @@ def _looked_at(driver: Driver, kind: str) -> bool:
             driver.head == "NAME" and driver.index == driver.statement_index + 1 and not driver.at_boundary
         )
         return alone and driver.machine.accepts(kind) and misspelt_alone(driver)
-    elif (
-        driver.head in _OPEN_ENDED and driver.depth == 0 and _after_value(driver) and is_decimal_comma(driver)
-    ):
-        driver.index += 2
-        return True
+    elif driver.depth == 0 and number_with_comma(driver) and not _may_part_values(driver):
+        return decimal_comma(driver)
     return False
 
 
@@ -210,9 +207,11 @@ def _new_after_comma(driver: Driver) -> bool:
     return new and ends_with_comma(driver)
 
 
-def _after_value(driver: Driver) -> bool:
-    """Whether the token before is the whole value of a parameter: ``SPEED := 0``."""
-    return driver.index > 1 and driver.tokens[driver.index - 2].type == "ASSIGN"
+def _may_part_values(driver: Driver) -> bool:
+    """Whether a number may follow the comma: none does in a list of variables, or behind ``SPEED := 0``."""
+    if driver.head in _OPEN_ENDED and any(token.type == "ASSIGN" for token in driver.statement_tokens):
+        return False
+    return driver.machine.accepts("COMMA", driver.following.type)
 
 
 def _begins_statement(driver: Driver) -> bool:

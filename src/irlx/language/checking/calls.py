@@ -8,6 +8,7 @@ from irlx.diagnostics import Related
 from irlx.language import tree
 from irlx.language.builtins import LAYOUT_BOUNDS
 from irlx.language.checking.context import NOTHING, Context, Typed
+from irlx.language.checking.decimal_commas import numbers_with_commas
 from irlx.language.checking.names import Constant, Entry
 from irlx.language.obstacles import OBSTACLE_NAME, obstacle_name, unknown_obstacle
 from irlx.language.references import Reference
@@ -122,7 +123,9 @@ class Calls(Context):
         if not signature.least <= len(arguments) <= len(parameters):
             self.unknown_arguments(arguments)
             data: dict[str, Any] = {"function": signature.name, "expected": _expected(signature)}
-            self.add("IRL228", node, related=related, found=len(arguments), **data)
+            wanted = range(signature.least, len(parameters) + 1)
+            help = numbers_with_commas(arguments, wanted, self.source.text)
+            self.add("IRL228", node, related=related, help=help, found=len(arguments), **data)
             return []
         return [
             self._argument(argument, parameter, signature)

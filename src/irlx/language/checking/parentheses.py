@@ -7,6 +7,7 @@ from math import hypot
 from irlx.diagnostics import SourceText
 from irlx.language import tree
 from irlx.language.checking.context import NOTHING, Context, Trial, Typed
+from irlx.language.checking.decimal_commas import numbers_with_commas
 from irlx.language.checking.names import Constant, Names
 from irlx.language.ranges import UNIT_LENGTH
 from irlx.language.types import (
@@ -81,11 +82,13 @@ class Parentheses(Context):
     def _assembled(
         self, node: tree.Expression, items: tuple[tree.Expression, ...], expected: Record | Array
     ) -> Typed:
-        wanted = len(expected.fields) if isinstance(expected, Record) else expected.size
+        wanted = _parts(expected)
         if wanted != len(items) and not _is_open(expected):
             for item in items:
                 self.fitted(item, UNKNOWN)
-            self.add("IRL223", node, type=expected.name, expected=count(wanted, "value"), found=len(items))
+            help = numbers_with_commas(items, (wanted,), self.source.text)
+            needed = count(wanted, "value")
+            self.add("IRL223", node, help=help, type=expected.name, expected=needed, found=len(items))
             return Typed(expected)
         if isinstance(expected, Record) and not expected.pattern:
             parts = [self.fitted(item, type) for item, (_, type) in zip(items, expected.fields, strict=True)]
@@ -144,7 +147,9 @@ class Parentheses(Context):
         for item in node.items:
             self.fitted(item, UNKNOWN)
         expected = " or ".join(type.name for type in candidates)
-        self.mismatch(node, expected, count(len(node.items), "value"), values_of_joints(candidates))
+        fixed = [_parts(type) for type in candidates if not _is_open(type)]
+        help = numbers_with_commas(node.items, fixed, self.source.text) or values_of_joints(candidates)
+        self.mismatch(node, expected, count(len(node.items), "value"), help)
         return NOTHING
 
     def _attempt(self, node: tree.Expression, type: Type) -> Trial:
@@ -160,6 +165,13 @@ def _takes(type: Type, values: int) -> bool:
     if isinstance(type, Record):
         return bool(type.pattern) or len(type.fields) == values
     return isinstance(type, Array) and (_is_open(type) or type.size == values)
+
+
+def _parts(type: Type) -> int:
+    """Number of values that make one of a type."""
+    if isinstance(type, Record):
+        return len(type.fields)
+    return type.size if isinstance(type, Array) else 1
 
 
 def _is_open(type: Type) -> bool:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from irlx.diagnostics import Span
 from irlx.language.keywords import NAMES_TOO
 from irlx.language.lexing import token_span
@@ -21,6 +23,7 @@ __all__ = [
     "missing_parentheses",
     "missing_then_or_do",
     "missing_token",
+    "number_with_comma",
     "superfluous_token",
 ]
 
@@ -39,6 +42,7 @@ _STARTS = STATEMENT_WORDS | {
 _GOES_ON = frozenset({"ASSIGN", "LEFT_PAREN", "LEFT_BRACKET", "DOT", "SEMICOLON"})
 _BODY_ENDS = frozenset({"ENDPROC", "ENDFCT", "ENDPROGRAM", "PROCEDURE", "FUNCTION", END})
 _MOST_PARENS = 8
+_THOUSANDS = re.compile(r"[0-9]{1,3}\.[0-9]{3}")
 
 
 def equals_for_assignment(driver: Driver) -> bool:
@@ -124,21 +128,26 @@ def superfluous_token(driver: Driver) -> bool:
 
 def decimal_comma(driver: Driver) -> bool:
     """``1,5`` where no list is: written without blanks, it is a number."""
-    if driver.token.type != "COMMA" or not is_decimal_comma(driver):
+    number = number_with_comma(driver)
+    if not number:
         return False
+    driver.report("IRL124", token_span(driver.token), number=number)
     driver.index += 2
     return True
 
 
-def is_decimal_comma(driver: Driver) -> bool:
-    """Whether the next token is the comma of a number; reports it then."""
+def number_with_comma(driver: Driver) -> str:
+    """The number that the tokens before and behind the next one make where that is its comma, else ''.
+
+    Also ``1.000,5``, with a point between thousands.
+    """
     before, comma, after = driver.previous, driver.token, driver.following
-    if before is None or before.type != "INT" or after.type != "INT":
-        return False
-    if before.end_pos != comma.start_pos or comma.end_pos != after.start_pos:
-        return False
-    driver.report("IRL124", token_span(comma), number=f"{before}.{after}")
-    return True
+    if comma.type != "COMMA" or before is None or after.type != "INT":
+        return ""
+    whole = before.replace(".", "") if _THOUSANDS.fullmatch(before) else before
+    if before.end_pos != comma.start_pos or comma.end_pos != after.start_pos or not whole.isdecimal():
+        return ""
+    return f"{whole}.{after}"
 
 
 def comma_for_semicolon(driver: Driver) -> bool:
