@@ -134,7 +134,7 @@ RUNS = [
         "FREEZESTART 1, 2, 3, 4, 5, 6;",
         "IRL347: 6 joints are frozen, but a robot of 11 joints can spare 5",
     ),
-    ("", "FREEZESTART 12;", "IRL346: FREEZESTART names joint 12; the robot has joints 1 to 11"),
+    ("", "FREEZESTART 12; FREEZEEND;", "IRL346: FREEZESTART names joint 12; the robot has joints 1 to 11"),
     ("", "MOVE LIN POSITION(11400, 1000, 1 / 0);", "IRL502: division by zero"),
     ("", "OBSTACLE wall; OBSTACLEEND wall;", "IRL573: the cell has no obstacle or group 'wall'"),
     (
