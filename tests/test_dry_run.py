@@ -172,3 +172,19 @@ def test_nobody_is_asked_on_standard_in(tmp_path) -> None:
     (tmp_path / "s.toml").write_text('[robot]\nmodel = "arm7"\n')
     (tmp_path / "s.irl").write_text("PROGRAM s;\nVAR INT: i;\nBEGIN\nREAD(i);\nWRITE(i);\nENDPROGRAM;\n")
     assert [one.code for one in irlx.check(tmp_path / "s.irl", motion=True)] == ["IRL546"]
+
+
+def test_a_coarse_row_is_told_by_its_tick(tmp_path) -> None:
+    """Something comes near a PTP, and a wait: a run says when, a dry run by its coarse rows."""
+    (tmp_path / "p.toml").write_text(
+        '[robot]\nmodel = "arm7"\n[motion]\ntick_ms = 10\n[[obstacle]]\nname = "ball"\nshape = "sphere"\n'
+        "radius = 50\nmargin = 10\ninfluence = 10\ntrajectory = [\n"
+        "  { time = 1.0, xyz = [441, -2000, 325] }, { time = 2.0, xyz = [441, 261, 325] } ]\n"
+    )
+    for move in ("WAIT 3 SEC;", "MOVE PTP MAIN_JOINT(40, 29, -13, 95, 9, 48, 80) OVERRIDE := 10;"):
+        (tmp_path / "p.irl").write_text(f"PROGRAM p;\nBEGIN\n  OBSTACLE ball;\n  {move}\nENDPROGRAM;\n")
+        with pytest.raises(irlx.RunError) as caught:
+            irlx.run(tmp_path / "p.irl")
+        (dry,) = (one for one in irlx.check(tmp_path / "p.irl", motion=True) if one.is_error)
+        assert dry.code == caught.value.reason.code == "IRL561"
+        assert 0 <= dry.data["tick"] - caught.value.reason.data["tick"] < 10

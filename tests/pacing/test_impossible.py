@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -176,3 +179,14 @@ def test_a_tick_whose_pose_is_met_is_not_said_to_miss_nothing(kit) -> None:
     assert impossible._missing(Sizes(0.0, 2e-9, 0.0), None).startswith(
         "at this tick 0 mm and 1.146e-07 deg are missing;"
     )
+
+
+def test_no_switch_is_blamed_for_a_band(kit) -> None:
+    """Of eight joints the last is a band of WITH TOLERANCE: JOINTLIMIT has narrowed the others alone."""
+    freed = SimpleNamespace(joints=np.arange(7))
+    switched = {LimitKind.POSITION: "JOINTLIMIT in line 4"}
+    found = replace(around(kit, kit.limits()), asked_by=switched, freed=freed)
+    assert found.narrowed_by(6, "position") == "JOINTLIMIT in line 4"
+    assert found.narrowed_by(7, "position") is None
+    assert replace(found, freed=None).narrowed_by(7, "position") == "JOINTLIMIT in line 4"
+    assert found.narrowed_by(6, "speed") is None

@@ -275,7 +275,7 @@ def test_a_curve_that_swings_beyond_a_limit_is_laid_further_inside_until_it_does
 def test_what_comes_too_near_is_told_with_its_tick_and_no_other_curve_is_tried(kit, monkeypatch):
     pair = SimpleNamespace(link="l3", other="wall", obstacle=None)
     clearance = SimpleNamespace(distances=SimpleNamespace(pairs=[None, pair]))
-    near = Refusal(0.3, near=TooNear(1, 0.0199, 0.02), row=5)
+    near = Refusal(0.3, near=TooNear(1, 0.0199, 0.02), tick=5)
     run, asked = planned_on([near], monkeypatch, kit, clearance)
     with pytest.raises(PacingError) as caught:
         run()

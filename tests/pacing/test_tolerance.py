@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+import irlx
 from irlx.blocks import ToleranceClause
 from irlx.pacing.posture_term import Asked
 from irlx.pacing.rows import MotionRows, PathPart
@@ -88,3 +89,22 @@ def test_virtual_joints_take_a_thousandth_of_the_cheapest_turn(slide: float, lea
     robot, setup = SimpleNamespace(axes=axes, reach=3.0), SimpleNamespace(weights=np.array([slide, 5.0]))
     found = _weights(SimpleNamespace(robot=robot, setup=setup), np.array([0, 2]), {1: 1, 4: 3}, 4)
     np.testing.assert_allclose(found, [slide, 1e-3 * least / 9.0, 5.0, 1e-3 * least], rtol=1e-12)
+
+
+@pytest.mark.req("MOT-20")
+def test_a_narrow_band_costs_no_time(tmp_path) -> None:
+    """A joint accelerates slowly, so that the move is planned: its bands are hardly more than none."""
+    (tmp_path / "p.toml").write_text('[robot]\nmodel = "arm7"\n[motion]\ntick_ms = 50\n')
+    taken = []
+    for dz in ("0", "1e-7"):
+        (tmp_path / "p.irl").write_text(
+            "PROGRAM p;\n"
+            "VAR MAIN_JOINT_ACCEL_MIN: lo := (-8, -80, -100, -300, -420, -14, -18);\n"
+            "  MAIN_JOINT_ACCEL_MAX: hi := (8, 80, 100, 300, 420, 14, 18);\n"
+            "BEGIN\n  JOINTACCELLIMIT lo, hi;\n"
+            "  MOVE LIN POSITION(453.65232, 302.42264, 411.290692) ACC := 815.922\n"
+            f"    WITH TOLERANCE (180, 5, {dz}, 0, 1, 0);\n"
+            "ENDPROGRAM;\n"
+        )
+        taken.append(len(irlx.run(tmp_path / "p.irl").q))
+    assert taken[0] == taken[1]

@@ -15,6 +15,7 @@ from irlx.diagnostics import Diagnostic, Place, report, told_apart
 from irlx.motion.plan_path import PlannedPath
 from irlx.motion.pose_path import PosePath
 from irlx.pacing.demand import Demand
+from irlx.pacing.freed import Freed
 from irlx.pacing.path_motion import Failure
 from irlx.pacing.row_check import BrokenBound
 from irlx.pacing.slowdown.clock_bounds import Governor
@@ -51,7 +52,7 @@ _LIMIT_NAMES = {
 class Surroundings:
     """What the diagnosis needs to know of the move: robot, limits in force, free joints, and the clause or
     switch of the program that narrowed a kind of limit, in words; what is kept clear, and the posture (n,)
-    that the move starts in."""
+    that the move starts in; which joints are bands of WITH TOLERANCE, that no switch narrows."""
 
     kinematics: Kinematics
     limits: JointLimits
@@ -59,6 +60,13 @@ class Surroundings:
     asked_by: Mapping[LimitKind, str] = field(default_factory=dict)
     clearance: Clearance | None = None
     start: Array | None = None
+    freed: Freed | None = None
+
+    def narrowed_by(self, joint: int, kind: str) -> str | None:
+        """The clause or switch that narrowed a kind of limit of a joint, in words."""
+        if self.freed is not None and joint not in self.freed.joints:
+            return None
+        return self.asked_by.get(LimitKind(kind.upper()))
 
 
 def joint_value(robot: RobotDescription, joint: int, value: float, per: str = "") -> str:
@@ -259,7 +267,7 @@ def _limit(joint: int, source: BoundSource, upper: bool, around: Surroundings) -
     kind = {BoundSource.SPEED: "speed", BoundSource.ACCELERATION: "acceleration"}.get(source, "position")
     per = {"speed": "/s", "acceleration": "/s2"}.get(kind, "")
     value = around.limits.pair(kind)[1 if upper else 0][joint]
-    asked = around.asked_by.get(LimitKind(kind.upper()))
+    asked = around.narrowed_by(joint, kind)
     origin = f" ({asked})" if asked is not None else ""
     words = joint_value(around.kinematics.description, joint, value, per)
     return f"{side} {_LIMIT_NAMES[source]} limit {words}{origin}"

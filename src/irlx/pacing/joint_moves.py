@@ -22,6 +22,7 @@ from irlx.pacing.options import LimitsInForce
 from irlx.pacing.posed import Pose, pose_of, pose_target, posture_target
 from irlx.pacing.posture_left import JOINTS_GIVEN, ON_THE_WAY, posture_left
 from irlx.pacing.postures import asked_posture
+from irlx.pacing.resolution import RowTicks
 from irlx.pacing.row_check import broken_bound
 from irlx.pacing.rows import MotionRows, handed_out, held
 from irlx.pacing.situation import Situation
@@ -121,16 +122,10 @@ def _motion(
         return Motion((None,), in_force, programmed=_programmed(situation, moves[0]), asked=asked)
     count = situation.setup.resolution.rows_of(motion.ticks)
     q = motion.postures(dt, count)
-    _check_rows(situation, q, in_force.limits, dt * motion.ticks / count, place)
+    ticking = RowTicks(situation.tick + 1, dt, motion.ticks / count)
+    _check_rows(situation, q, in_force.limits, ticking, place)
     check_conditions(q, situation.kinematics, place)
-    check_rows(
-        situation.clearance,
-        q,
-        situation.q,
-        (situation.tick + 1, dt * motion.ticks / count),
-        "MOVE PTP",
-        place,
-    )
+    check_rows(situation.clearance, q, situation.q, ticking, "MOVE PTP", place)
     s = programmed_clock(motion.law, motion.ticks, dt, count).s
     rows = replace(_rows(situation, moves[0], q, s), span=motion.ticks + 1)
     handed: list[MotionRows | None] = [rows]
@@ -170,10 +165,11 @@ def _rows(situation: Situation, block: MoveBlock, q: Array, s: Array) -> MotionR
     )
 
 
-def _check_rows(situation: Situation, q: Array, limits: JointLimits, dt: float, place: Place) -> None:
-    broken = broken_bound(situation.q, held(q), limits, dt)
+def _check_rows(situation: Situation, q: Array, limits: JointLimits, ticking: RowTicks, place: Place) -> None:
+    broken = broken_bound(situation.q, held(q), limits, ticking.dt * ticking.ticks_a_row)
     if broken is not None:
-        raise PacingError(explain_broken_row(broken, situation.tick + 1, situation.robot, place))
+        broken = broken.counted_in_ticks(ticking.ticks_a_row)
+        raise PacingError(explain_broken_row(broken, ticking.first_tick, situation.robot, place))
 
 
 def _end_posture(situation: Situation, block: MoveBlock, in_force: LimitsInForce, place: Place) -> Array:

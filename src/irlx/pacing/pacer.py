@@ -59,6 +59,7 @@ from irlx.pacing.posture_left import posture_left, why_left
 from irlx.pacing.postures import asked_posture, posture_of_pose
 from irlx.pacing.reconfigure import reconfigured
 from irlx.pacing.refitting import refitted
+from irlx.pacing.resolution import RowTicks
 from irlx.pacing.rows import MotionRows
 from irlx.pacing.situation import PacingSetup, Situation
 from irlx.pacing.snap import snapped
@@ -385,16 +386,18 @@ class Pacer:
         """The rows of a motion with its limits, the robot now standing at their end."""
         if rows is None:
             return None
-        dt = self.setup.dt * rows.ticks / len(rows)
+        setup = self.setup
+        ticking = RowTicks(rows.first_tick, setup.dt, rows.ticks / len(rows))
         clear = self._clear_from_now
         # Nobody is told of the rows of a dry run.
-        if self.setup.resolution.is_coarse:
+        if setup.resolution.is_coarse:
             nearest = None
         else:
+            dt = setup.dt * rows.ticks / len(rows)
             nearest = nearest_rows(clear, rows.q, dt) if rows.nearest is None else rows.nearest
         place = self.locate(rows.block.origin)
         if rows.stops:
-            self.warnings += passed_by(clear, rows.q, (rows.first_tick, dt), place)
+            self.warnings += passed_by(clear, rows.q, ticking, place)
         self.q = rows.q[-1]
         self.tick += rows.ticks
         return replace(rows, limits=in_force.limits, nearest=nearest)
@@ -403,7 +406,7 @@ class Pacer:
         setup = self.setup
         rows = waited(block, self.q, setup.dt, self.tick + 1, setup.kinematics, place, setup.resolution)
         if rows is not None and setup.scene.moves:
-            ticking = self.tick + 1, setup.dt * rows.ticks / len(rows)
+            ticking = RowTicks(self.tick + 1, setup.dt, rows.ticks / len(rows))
             check_rows(self._clear_from_now, rows.q, self.q, ticking, "while it waits something", place)
         return self._moved(rows, self._situation.in_force())
 

@@ -228,7 +228,8 @@ def _walked(
     if walked.halt is not None:
         return walked, None
     held = np.vstack([walked.q, walked.q[-1:]])
-    return walked, broken_bound(motion.start, held, model.limits, dt)
+    broken = broken_bound(motion.start, held, model.limits, dt)
+    return walked, broken and broken.counted_in_ticks(clock.ticks_a_row)
 
 
 def _as_walked(motion: PathMotion, walked: Walk) -> PacedPath:

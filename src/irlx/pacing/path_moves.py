@@ -138,7 +138,10 @@ def _paced(
     paced = pace_path(_path_motion(situation, plan, term, place), model, situation.solver)
     if isinstance(paced, Failure):
         told, clear = in_force.told, situation.clearance
-        around = Surroundings(situation.kinematics, in_force.limits, situation.free, told, clear, situation.q)
+        limits, start = in_force.limits, situation.q
+        around = Surroundings(
+            situation.kinematics, limits, situation.free, told, clear, start, situation.freed
+        )
         goal = goal_shortfall(
             around, plan.path.end_rotation, plan.path.end_position, situation.q, bool(asked)
         )

@@ -124,7 +124,7 @@ def _planned(
         found = _on_curve(model, flow.further_inside(widening), ticking)
     if isinstance(found, Refusal):
         if found.near is not None and model.clearance is not None:
-            words, tick = told(model.clearance, found.near), first_tick + found.row
+            words, tick = told(model.clearance, found.near), first_tick + found.tick
             raise PacingError(report("IRL561", place, word="RECONFIGURATION", tick=tick, **words))
         if found.broken is None:
             raise ArithmeticError("a posture curve was refused without a reason: the planner is at fault")

@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import ceil
 
+import numpy as np
+from numpy.typing import NDArray
+
 from irlx.pacing.slowdown.grid import FINE, Spacing
 
 LEAST_ROWS = 8
@@ -34,3 +37,25 @@ class Resolution:
 
 
 EVERY_TICK = Resolution()
+
+
+def ticks_before(row: int, ticks_a_row: float) -> int:
+    """Whole ticks of a motion before that of its row (counted from 0), rows spread evenly over its ticks."""
+    return round((row + 1) * ticks_a_row) - 1
+
+
+@dataclass(frozen=True)
+class RowTicks:
+    """When the rows of a motion are: its first tick by number, ticks of `dt` s, `ticks_a_row` each."""
+
+    first_tick: int
+    dt: float
+    ticks_a_row: float = 1.0
+
+    def tick(self, row: int) -> int:
+        """The number of the tick of a row, counted from 0."""
+        return self.first_tick + ticks_before(row, self.ticks_a_row)
+
+    def elapsed(self, rows: int) -> NDArray[np.float64]:
+        """Times (N,), s, from the begin of the motion to its first N rows."""
+        return np.asarray(self.dt * self.ticks_a_row * np.arange(1.0, rows + 1.0))

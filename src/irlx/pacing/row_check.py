@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from irlx.blocks import LimitKind
+from irlx.pacing.resolution import ticks_before
 from irlx.promises import LIMIT_EXCESS, rounding_allowance
 from irlx.robot.limits import JointLimits
 
@@ -23,6 +24,10 @@ class BrokenBound:
     kind: LimitKind
     value: float
     bound: float
+
+    def counted_in_ticks(self, ticks_a_row: float) -> BrokenBound:
+        """The same with `row` as the number of its tick, where a row stands for more than one of them."""
+        return replace(self, row=ticks_before(self.row, ticks_a_row))
 
 
 def broken_bound(start: Array, rows: Array, limits: JointLimits, dt: float) -> BrokenBound | None:

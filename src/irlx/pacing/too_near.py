@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from irlx.diagnostics import Diagnostic, Place, report
 from irlx.pacing.errors import PacingError
+from irlx.pacing.resolution import RowTicks
 from irlx.scene.watched_pair import WatchedPair
 from irlx.transform.clearance import Clearance, TooNear
 
@@ -48,37 +49,31 @@ def check_rows(
     clearance: Clearance | None,
     rows: Array,
     start: Array,
-    ticking: tuple[int, float],
+    ticking: RowTicks,
     word: str,
     place: Place,
 ) -> None:
     """Check rows (N, n) of a motion from posture `start` (n,) that avoids nothing by itself.
 
-    `ticking`: number of the first row's tick, and time (s) from row to row. Raises PacingError, IRL561, at
-    the first row that comes too near to something.
+    Raises PacingError, IRL561, at the first row that comes too near to something.
     """
-    first_tick, dt = ticking
-    elapsed = dt * np.arange(1.0, len(rows) + 1.0)
+    elapsed = ticking.elapsed(len(rows))
     short = clearance.first_short(rows, start, elapsed) if clearance is not None else None
     if clearance is not None and short is not None:
         row, found = short
-        raise PacingError(report("IRL561", place, word=word, tick=first_tick + row, **told(clearance, found)))
+        raise PacingError(
+            report("IRL561", place, word=word, tick=ticking.tick(row), **told(clearance, found))
+        )
 
 
-def passed_by(
-    clearance: Clearance | None, rows: Array, ticking: tuple[int, float], place: Place
-) -> list[Diagnostic]:
-    """A warning, IRL564, where an obstacle that moves comes too near in the last of rows (N, n), a hold tick.
-
-    `ticking` as in `check_rows`.
-    """
+def passed_by(clearance: Clearance | None, rows: Array, ticking: RowTicks, place: Place) -> list[Diagnostic]:
+    """A warning, IRL564, where an obstacle that moves comes too near in the last of rows (N, n), a hold."""
     if clearance is None or not clearance.distances.moves or len(rows) == 0:
         return []
-    first_tick, dt = ticking
-    short = clearance.short(rows[-1], rows[-1], dt * len(rows))
+    short = clearance.short(rows[-1], rows[-1], float(ticking.elapsed(len(rows))[-1]))
     if short is None:
         return []
-    return [report("IRL564", place, tick=first_tick + len(rows) - 1, **told(clearance, short))]
+    return [report("IRL564", place, tick=ticking.tick(len(rows) - 1), **told(clearance, short))]
 
 
 def standing(

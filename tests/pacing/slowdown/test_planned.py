@@ -303,5 +303,24 @@ def test_rows_are_held_against_what_is_kept_clear_at_their_times(row: int | None
         return
     s, _ = clock.at(np.array([elapsed[row] * clock.duration / whole]))
     assert isinstance(found, Refusal)
-    assert (found.near, found.row) == (near, row)
+    assert (found.near, found.tick) == (near, round(elapsed[row] / dt) - 1)
     assert found.s == pytest.approx(s[0], rel=1e-9)
+
+
+def test_a_curve_that_swings_out_between_knots_is_told_by_the_side_and_the_tick(monkeypatch) -> None:
+    """Every knot is on its limit or inside; between the first and the second one joint 1 passes it below."""
+    robot, dt = machine("arm7"), 0.004
+    path = robot.line((0.0, -0.02, 0.0))
+    grid = path_grid(path, Trapezoid.fastest(path.length, 0.25, 1.5))
+    q = np.tile(robot.start, (len(grid.s), 1))
+    q[5:, 0] -= 0.1
+    lower, upper = (side.copy() for side in robot.unlimited().pair("position"))
+    lower[0], upper[0] = robot.start[0] - 0.1, robot.start[0]
+    model = robot.model(robot.unlimited().with_pair("position", lower, upper))
+    found = planned._outside(model, grid, q, dt)
+    assert found.broken is not None
+    assert grid.s[3] < found.s < grid.s[6]
+    value, bound = found.broken.value, found.broken.bound
+    assert (found.broken.joint, bound) in {(0, lower[0]), (0, upper[0])}
+    assert value < lower[0] if bound == lower[0] else value > upper[0]
+    assert found.broken.row == int(grid.times_at(np.array([found.s]))[0] / dt)

@@ -128,7 +128,7 @@ def _timed(
         return None
     limits = model.limits
     curve = JointCurve(grid.s, q)
-    between = curve.at((grid.s[:-1, None] + np.diff(grid.s)[:, None] * _PARTS).ravel())
+    between = curve.at(inner_places(grid))
     if (
         float(np.max(np.maximum(between - limits.position_upper, limits.position_lower - between)))
         > _ROUNDING
@@ -136,6 +136,11 @@ def _timed(
         return None
     clock = plan_clock(clock_bounds(curve, limits, grid.rates, acc))
     return TimedCurve(curve, clock) if clock is not None else None
+
+
+def inner_places(grid: PathGrid) -> Array:
+    """Path parameters of the knots but the last, and of places between, at which limits are looked at."""
+    return np.asarray((grid.s[:-1, None] + np.diff(grid.s)[:, None] * _PARTS).ravel())
 
 
 def places_between(grid: PathGrid) -> Array:

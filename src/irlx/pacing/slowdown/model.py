@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irlx.motion.pose_path import Poses
+from irlx.pacing.slowdown.reserve import RESERVE
 from irlx.robot.kinematics import Kinematics
 from irlx.robot.limits import JointLimits
 from irlx.robot.pose_targets import PoseTargets
@@ -46,6 +47,18 @@ class Model:
         held |= (limits.acceleration_lower == 0.0) | (limits.acceleration_upper == 0.0)
         held |= limits.position_lower == limits.position_upper
         return np.asarray(self.free & ~held)
+
+    @property
+    def narrow(self) -> NDArray[np.bool_]:
+        """Joints (n,) with so narrow a range that it leaves no room for the reserve of a plan."""
+        width = self.limits.position_upper - self.limits.position_lower
+        return np.asarray(0.25 * width < RESERVE)
+
+    @property
+    def limitless(self) -> NDArray[np.bool_]:
+        """Joints (n,) whose speed and acceleration nothing limits."""
+        sides = [side for kind in ("speed", "acceleration") for side in self.limits.pair(kind)]
+        return np.asarray(np.all(np.isinf(sides), axis=0))
 
     @cached_property
     def speeds_either_way(self) -> Array:

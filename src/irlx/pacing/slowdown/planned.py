@@ -14,14 +14,14 @@ from irlx.motion.pose_path import PosePath, Poses
 from irlx.motion.time_law import TimeLaw
 from irlx.pacing.clock import Clock
 from irlx.pacing.demand import Demands
-from irlx.pacing.resolution import EVERY_TICK, Resolution
+from irlx.pacing.resolution import EVERY_TICK, Resolution, ticks_before
 from irlx.pacing.row_check import BrokenBound, excess_of
 from irlx.pacing.slowdown.clock import PlannedClock
 from irlx.pacing.slowdown.curve import JointCurve
 from irlx.pacing.slowdown.drawn_end import with_drawn_end
 from irlx.pacing.slowdown.elastic_walk import elastic_walk
 from irlx.pacing.slowdown.grid import PathGrid, acc_between, path_grid
-from irlx.pacing.slowdown.ladder import TimedCurve, places_between, timed_curves
+from irlx.pacing.slowdown.ladder import TimedCurve, inner_places, places_between, timed_curves
 from irlx.pacing.slowdown.model import Model
 from irlx.pacing.slowdown.resample import resample
 from irlx.pacing.slowdown.reserve import RESERVE, reserved
@@ -45,6 +45,7 @@ SINGULAR_SHARE = 1e-3
 COARSE_GAIN = 3e-3
 """Part of its time that a dry run must win by smoothing for more of it to be tried."""
 
+_ON_PATH = 1e-8
 _STRETCHES = 8
 _RESERVES = 4
 _RESERVE_GROWTH = 4.0
@@ -67,8 +68,8 @@ class Refusal:
     """Why no clock, however slow, leads through a motion, and where on the path (`s`).
 
     `solution` holds the failed step of the walk. Else the clock of `timed` stands at `knot`, for the bound
-    it names. Else only the differences of the rows say no: `broken`, its row counted from the start of
-    the motion. Or something comes too `near`, in a `row` from the start of the motion. `reserve` (m) is what
+    it names. Else only the differences of the rows say no: `broken`, its row counted in ticks from the start
+    of the motion. Or something comes too `near`, at a `tick` counted from there. `reserve` (m) is what
     the walk kept beside margins, and `elapsed` the time (s) from the start at which its step failed.
     """
 
@@ -78,7 +79,7 @@ class Refusal:
     knot: int = -1
     broken: BrokenBound | None = None
     near: TooNear | None = None
-    row: int = 0
+    tick: int = 0
     reserve: float = 0.0
     elapsed: float = 0.0
 
@@ -123,13 +124,35 @@ def plan_motion(model: Model, task: MotionTask) -> PlannedMotion | Refusal:
     See docs/reference/pacing.md for the method and what it promises.
     """
     model = replace(model, free=model.movable)
+    narrow = model.narrow
+    # A band of WITH TOLERANCE has no limits of its own; in a narrow one nothing is won.
+    idle = narrow & model.limitless
+    first = None if task.draws else _planned_without(model, idle, task)
+    if first is not None:
+        return first
     found = _planned(model, task)
+    if not isinstance(found, Refusal):
+        return found
+    # A joint that must not go back needs a curve without the least swing, one in a narrow range nearly so;
+    # at rest it has one.
     one_way = (model.limits.speed_lower == 0.0) | (model.limits.speed_upper == 0.0)
-    if isinstance(found, Refusal) and np.any(model.free & one_way):
-        # A joint that must not go back needs a curve without the least swing; at rest it has one.
-        held = _planned(replace(model, free=model.free & ~one_way), task)
-        return found if isinstance(held, Refusal) else held
-    return found
+    return _planned_without(model, one_way, task) or _planned_without(model, narrow, task) or found
+
+
+def _planned_without(model: Model, resting: NDArray[np.bool_], task: MotionTask) -> PlannedMotion | None:
+    """The motion with some joints (n,) at rest, None where there is none, or too few others move."""
+    if not np.any(model.free & resting):
+        return None
+    held = replace(model, free=model.free & ~resting)
+    found = _planned(held, task)
+    return found if isinstance(found, PlannedMotion) and _keeps_path(model, found) else None
+
+
+def _keeps_path(model: Model, found: PlannedMotion) -> bool:
+    """Whether rows have all of their poses, also where joints at rest leave too few for that."""
+    poses = Poses(found.demands.position, found.demands.rotation)
+    twists, _ = model.differences(found.q, model.targets(poses))
+    return bool(np.max(np.abs(twists)) <= _ON_PATH)
 
 
 def _planned(model: Model, task: MotionTask) -> PlannedMotion | Refusal:
@@ -176,7 +199,7 @@ def _with_reserve(
     curves = timed_curves(model, grid, q, bounds, _acc(task, grid), through, reserve, least_gain, kinked)
     fastest = next(curves, None)
     if fastest is None:
-        return _outside(model, grid, q)
+        return _outside(model, grid, q, task.ticking.dt)
     standing = _standing(model, fastest, grid)
     if standing is not None:
         return Refusal(float(grid.s[standing]), timed=fastest, knot=standing)
@@ -228,18 +251,23 @@ def _most_singular(model: Model, timed: TimedCurve, grid: PathGrid) -> int:
     return int(np.argmin(np.linalg.svd(jacobians, compute_uv=False)[:, -1]))
 
 
-def _outside(model: Model, grid: PathGrid, q: Array) -> Refusal:
-    """The knot at which the walked postures (N + 1, n) leave a position limit most, or come too near."""
+def _outside(model: Model, grid: PathGrid, q: Array, dt: float) -> Refusal:
+    """Where the curve through walked postures (N + 1, n) leaves a position limit most, or comes too near."""
     lower, upper = model.limits.pair("position")
     if model.clearance is not None and np.all((q <= upper) & (q >= lower)):
         places = places_between(grid)
         short = model.clearance.first_short(JointCurve(grid.s, q).at(places), q[0], grid.times_at(places))
         if short is not None:
             return Refusal(float(places[short[0]]), near=short[1])
-    knot, joint = np.unravel_index(int(np.argmax(np.maximum(q - upper, lower - q))), q.shape)
-    value = float(q[knot, joint])
-    bound = float((upper if value > upper[joint] else lower)[joint])
-    return Refusal(float(grid.s[knot]), broken=BrokenBound(0, int(joint), LimitKind.POSITION, value, bound))
+    # Where no knot is outside the curve swings out between two of them.
+    places = np.append(inner_places(grid), grid.s[-1])
+    between = JointCurve(grid.s, q).at(places)
+    over, under = between - upper, lower - between
+    row, joint = np.unravel_index(int(np.argmax(np.maximum(over, under))), between.shape)
+    bound = float((upper if over[row, joint] >= under[row, joint] else lower)[joint])
+    tick = int(grid.times_at(places[row : row + 1])[0] / dt)
+    value = float(between[row, joint])
+    return Refusal(float(places[row]), broken=BrokenBound(tick, int(joint), LimitKind.POSITION, value, bound))
 
 
 def _standing(model: Model, timed: TimedCurve, grid: PathGrid) -> int | None:
@@ -281,9 +309,11 @@ def rows_on_clock(model: Model, timed: TimedCurve, ticking: Ticking, least: floa
                 elapsed = whole / rows * np.arange(1.0, rows + 1.0)
                 short = model.clearance.first_short(q, start, elapsed)
                 if short is not None:
-                    return Refusal(demands[short[0]].s, near=short[1], row=short[0])
+                    tick = ticks_before(short[0], ticks / rows)
+                    return Refusal(demands[short[0]].s, near=short[1], tick=tick)
             return PlannedMotion(q, demands, timed, factor)
-        found = Refusal(demands[min(broken.row, rows - 1)].s, broken=broken)
+        place = demands[min(broken.row, rows - 1)].s
+        found = Refusal(place, broken=broken.counted_in_ticks(ticks / rows))
         slower = max(excess.speed, np.sqrt(excess.acceleration)) * (1.0 + _STRETCH_MARGIN)
         duration = max(whole * slower, duration)
         if excess.position > 0.0 or slower > _LARGEST_STRETCH:
