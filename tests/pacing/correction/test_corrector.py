@@ -118,6 +118,26 @@ def test_an_offset_leaves_a_place_that_narrower_limits_forbid(kit) -> None:
     assert np.max(np.abs(np.diff(speeds, axis=0))) / DT <= 8.0 + 1e-9
 
 
+@pytest.mark.parametrize("most", [0.0, 0.05])
+def test_a_correction_stops_before_joints_brake_worse(kit, most: float) -> None:
+    """The request goes to and fro; then two joints may hardly accelerate: they would go on for a metre."""
+    limits = np.where(np.arange(7) == 2, most, 8.0)
+    narrower = LimitSwitchBlock(
+        id=2, origin=origin(2), kind=LimitKind.ACCELERATION, range=kit.range(limits, -limits)
+    )
+    count = iter(range(10_000))
+    move = line(1, kit.beyond(0.1, 0.0, 0.0))
+    back = line(3, kit.beyond(0.0, 0.0, 0.0))
+    found = Corrected(kit, [move, narrower, back], lambda: 0.05 * np.sin(0.1 * next(count)) * np.eye(6)[1])
+    speeds = np.diff(np.vstack([kit.start, kit.start, found.q]), axis=0) / DT
+    accelerations = np.diff(speeds, axis=0) / DT
+    first = len(found.of(1))
+    assert np.max(np.abs(speeds[:first, 2])) > 0.05
+    assert np.max(np.abs(accelerations[first:, 2])) <= most + 1e-9
+    assert np.max(np.abs(found.of(3)[:, 2] - found.of(1)[-1, 2])) < 0.06
+    assert not np.any(speeds[-1])
+
+
 @pytest.mark.parametrize("joint", [1, 2])
 def test_a_joint_that_is_frozen_under_way_comes_to_rest_first(kit, joint: int) -> None:
     """The request grows all the time: joints that move with it brake in ticks of their own, then stand."""

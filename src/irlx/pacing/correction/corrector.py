@@ -223,10 +223,21 @@ class Corrector:
 
     def _fits(self, motion: PlannedMotion, around: Surroundings) -> bool:
         now, first = self._now, motion.rows[0]
-        if np.any(now.speed[~around.free]):
+        if np.any(now.speed[~around.free]) or self._brakes_worse(around):
             return False
         bounds = around.limiter.bounds(now.offset, now.speed, first.lowest, first.highest)
         return not bounds.conflicts.size
+
+    def _brakes_worse(self, around: Surroundings) -> bool:
+        """Whether a joint is moving that could stop sooner by the limits before than by these."""
+        if self._around is None:
+            return False
+        speed = self._now.speed
+        before, after = (
+            np.where(speed > 0.0, -limits.acceleration_lower, limits.acceleration_upper)
+            for limits in (self._around.limits, around.limits)
+        )
+        return bool(np.any((after < before) & (np.abs(speed) > after * around.limiter.dt)))
 
     def _rest(self) -> Iterator[CorrectedRow]:
         """Rows in which the robot stands until its offset is at rest."""
