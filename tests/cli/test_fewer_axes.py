@@ -437,7 +437,7 @@ xyz = [900, -400, 0]"""
     ],
 )
 def test_tasks_that_are_none(tmp_path, cell: str, code: str, words: str) -> None:
-    program = written(tmp_path, "  MOVE LIN (600, 0, 900);", cell)
+    program = written(tmp_path, "  MOVE LIN POSITION(600, 0, 900);", cell)
     with pytest.raises(irlx.IrlxError) as caught:
         irlx.run(program)
     (found,) = (d for d in caught.value.diagnostics if d.is_error)

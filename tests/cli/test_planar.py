@@ -61,7 +61,7 @@ def test_an_arm_without_redundancy_has_one_answer(tmp_path: Path) -> None:
     shoulder = np.arctan2(wrist[1], wrist[0]) - np.arctan2(0.35 * np.sin(elbow), 0.45 + 0.35 * np.cos(elbow))
     np.testing.assert_allclose(run.q[-1, :2], [shoulder, elbow], atol=1e-9)
     assert (
-        refused(tmp_path, "  FREEZESTART 1;\n  MOVE LIN (300, 650, 0);\n  FREEZEEND;", "planar3").code
+        refused(tmp_path, "  FREEZESTART 1;\n  MOVE LIN POSITION(300, 650, 0);\n  FREEZEEND;", "planar3").code
         == "IRL347"
     )
 
