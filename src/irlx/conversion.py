@@ -14,7 +14,7 @@ from irlx.exporters import TARGETS, ProgramWriter, Target, target_of_ending
 from irlx.streams.error import StreamError
 from irlx.streams.formats import FORMATS, open_writer, put, scan_stream
 from irlx.streams.joint_stream import BlockRecord, JointStream, StreamHeader
-from irlx.streams.scan import ScanItem, in_file_order, scan_of
+from irlx.streams.scan import RowBatch, ScanItem, in_file_order, scan_of
 from irlx.streams.writer import StreamWriter
 
 if TYPE_CHECKING:
@@ -60,6 +60,8 @@ def convert(
         known = FORMATS.get(path.suffix.lower()) if to is None else None
         if known is not None and lost.blocks and not known.carries_blocks:
             notes.append(_left_out(path, known.title, "blocks", lost.blocks))
+        if known is not None and known.carries_blocks and lost.names_blocks and not lost.blocks:
+            notes.append(_without_blocks(path, known.title))
         if to is not None and lost.signals:
             title = to.writer.profile.title
             notes.append(_left_out(path, title, "outputs, inputs and conditions of waits", lost.signals))
@@ -67,27 +69,36 @@ def convert(
 
 
 class _Counts(NamedTuple):
-    """What was in a scan: block records, and those of them that are signals or wait for one."""
+    """What was in a scan: block records, those that are signals or wait for one; whether rows name blocks."""
 
     blocks: int
     signals: int
+    names_blocks: bool
 
 
 def _feed(scan: Iterator[ScanItem], writers: Sequence[StreamWriter]) -> _Counts:
     """Give all that is left of a scan to every writer; returns what only some of them can hold."""
     blocks = signals = 0
+    names_blocks = False
     for item in scan:
         if isinstance(item, BlockRecord):
             blocks += 1
             waits = isinstance(item.block, WaitBlock) and bool(item.block.condition)
             signals += waits or isinstance(item.block, SignalBlock | InputBlock)
+        elif isinstance(item, RowBatch):
+            names_blocks = names_blocks or bool(item.block.any())
         for writer in writers:
             put(item, writer)
-    return _Counts(blocks, signals)
+    return _Counts(blocks, signals, names_blocks)
 
 
 def _left_out(path: Path, title: str, what: str, number: int) -> Diagnostic:
     return report("IRL719", Place(str(path)), format=title, what=what, number=number)
+
+
+def _without_blocks(path: Path, title: str) -> Diagnostic:
+    known = ", ".join(ending for ending, format in FORMATS.items() if format.carries_blocks)
+    return report("IRL729", Place(str(path)), title=title, known=known)
 
 
 def _open(path: Path, target: Target | None, header: StreamHeader, incomplete: bool) -> StreamWriter:

@@ -14,7 +14,7 @@ from irlx.cell.find import find_cell, is_file
 from irlx.cell.frame_names import frame_names
 from irlx.cell.known import KnownCell, known_of, known_of_file
 from irlx.diagnostics import Diagnostic, IrlxError, Place, SourceText, Span, report
-from irlx.diagnostics.near_files import near_files
+from irlx.diagnostics.near_files import near_files, near_names
 from irlx.diagnostics.whole_file import whole_file
 from irlx.language import tree
 from irlx.language.analysis import Analysis, CellNames, DataListResolver, analyse
@@ -293,8 +293,8 @@ class _Beside:
         self._open, self._content = [program], read
         self._done: dict[Path, Analysis] = {}
 
-    def __call__(self, name: str) -> Analysis | None:
-        """Analysis of the module of a name, None without a file. Raises ModuleProblem: IRL260, IRL261."""
+    def __call__(self, name: str) -> Analysis:
+        """Analysis of the module of a name. Raises ModuleProblem: IRL218 without a file, IRL260, IRL261."""
         path = self._open[0].with_name(f"{name}.irl")
         if path in self._open:
             circle = " imports ".join(file.name for file in [*self._open[self._open.index(path) :], path])
@@ -303,7 +303,8 @@ class _Beside:
             try:
                 content = self._content(path)
             except FileNotFoundError:
-                return None
+                near = near_names(path, self._open)
+                raise ModuleProblem("IRL218", module=name, near=near) from None
             except (OSError, ValueError) as cause:
                 words = "it is a folder" if isinstance(cause, IsADirectoryError) else _words(cause)
                 raise ModuleProblem("IRL261", module=name, path=path, cause=words) from None

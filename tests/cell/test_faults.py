@@ -246,6 +246,15 @@ def test_no_robot(faults, text, message):
 
 
 @pytest.mark.req("CELL-03")
+@pytest.mark.parametrize("model", ["kr1o.urdf", "./kr1o.urdf", "kr1o"])
+def test_a_urdf_with_a_name_like_that_is_named(faults, tmp_path, model):
+    (tmp_path / "kr10.urdf").write_text("", encoding="utf-8")
+    ((code, _, message),) = faults(f"[robot]\nmodel = '{model}'\n")
+    assert code == "IRL611"
+    assert message.endswith("; did you mean 'kr10.urdf'?")
+
+
+@pytest.mark.req("CELL-03")
 @pytest.mark.parametrize("model", ["no.urdf", "./no.urdf", "sub/no.urdf", "."])
 def test_a_missing_urdf_says_where_it_was_looked_for(faults, tmp_path, model):
     ((code, key, message),) = faults(f"[robot]\nmodel = '{model}'\n")

@@ -219,7 +219,19 @@ def test_csv_says_what_it_lacks(good: JointStream, tmp_path: Path) -> None:
     assert note.message == f"CSV: blocks are left out, {len(good.records)} in this stream"
     # Nothing is lost where nothing was.
     assert irlx.convert(tmp_path / "a.csv", tmp_path / "b.csv") == ()
-    assert irlx.convert(tmp_path / "a.csv", tmp_path / "b.jsonl") == ()
+
+
+def test_what_comes_of_a_csv_says_that_it_has_no_blocks(good: JointStream, tmp_path: Path) -> None:
+    """Its rows name blocks that are nowhere; a stream whose rows name none lacks nothing."""
+    irlx.convert(good, tmp_path / "a.csv")
+    (note,) = irlx.convert(tmp_path / "a.csv", [tmp_path / "b.csv", tmp_path / "b.jsonl"])
+    assert (note.code, str(note.place)) == ("IRL729", str(tmp_path / "b.jsonl"))
+    assert note.message.startswith("JSON Lines: the stream that it was made from has no blocks")
+    assert ".npz" in note.help
+    assert ".csv" not in note.help
+    assert not irlx.verify(tmp_path / "b.jsonl").passed
+    nameless = replace(good, block=np.zeros_like(good.block), records=())
+    assert irlx.convert(nameless, tmp_path / "c.npz") == ()
 
 
 def test_programs_say_that_signals_are_left_out(tmp_path: Path) -> None:

@@ -125,7 +125,7 @@ WRONG = [
     (
         "FROM tols IMPORT x;",
         {"tools_irl": "MODULE tools; ENDMODULE"},
-        ["p.irl:2:6: error IRL218: no module 'tols'"],
+        ["p.irl:2:6: error IRL218: no module 'tols'; did you mean 'tools'?"],
     ),
     (
         "FROM tools IMPORT gripp;",

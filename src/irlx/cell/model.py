@@ -18,6 +18,7 @@ from irlx.cell.schema import RobotSection, Section, SelfCollisionSection
 from irlx.cell.task import with_origins, with_task
 from irlx.diagnostics import Place, report
 from irlx.diagnostics.diagnostic import near_matches
+from irlx.diagnostics.near_files import near_files
 from irlx.diagnostics.whole_file import whole_text
 from irlx.robot.description import RobotDescription
 from irlx.robot.urdf import read_urdf
@@ -196,6 +197,8 @@ def _urdf_file(model: str, folder: Path, place: Place) -> str:
     looks_like_a_path = "/" in model or "." in model
     if not looks_like_a_path or not is_file(path):
         near = near_matches(model, robot_names())
+        beside = path if looks_like_a_path else folder / f"{model}.urdf"
+        near = near or (near_files(beside) if beside.suffix else "")
         tried = "" if not looks_like_a_path else f" (looked for {path})"
         raise CellError(report("IRL611", place, model=model, tried=tried, near=near, **_known()))
     try:

@@ -129,7 +129,7 @@ class Unit:
         """Bring in names of a module. Raises InterpreterError, IRL218, IRL219."""
         exporting = self._world.modules.get(part.module.key)
         if exporting is None:
-            raise fail("IRL218", self._source, part.module.span, module=part.module.name)
+            raise fail("IRL218", self._source, part.module.span, module=part.module.name, near="")
         for name in part.names:
             found = exporting.found(name.key)
             type = exporting.type(name.key) if name.key in exporting.announced else None

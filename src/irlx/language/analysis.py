@@ -189,7 +189,7 @@ def _imported(
             findings.append(report(problem.code, place, **problem.data))
             continue
         if module is None:
-            findings.append(report("IRL218", place, module=declaration.module.name))
+            findings.append(report("IRL218", place, module=declaration.module.name, near=""))
             continue
         findings += no_module(declaration, module.source, module.tree, source)
         if isinstance(module.tree, tree.Module):

@@ -28,7 +28,7 @@ NAMES: tuple[Code, ...] = (
     error("IRL215", "unknown label '{name}'{near}", "write 'name:' before the statement to jump to"),
     error("IRL216", "'{name}' is a system variable: assign to it instead of declaring it"),
     error("IRL217", "EXIT outside of a loop", "EXIT leaves FOR, WHILE or REPEAT; HALT ends the program"),
-    error("IRL218", "no module '{module}'", "a module NAME is the file NAME.irl beside the program"),
+    error("IRL218", "no module '{module}'{near}", "a module NAME is the file NAME.irl beside the program"),
     error(
         "IRL260",
         "module '{module}' is imported in a circle: {files}",

@@ -126,6 +126,11 @@ STREAM: tuple[Code, ...] = (
         "the recorded execution read {recorded} from {name} here, which is {value} now",
         "give inputs as they were, or run the program, which takes the way that belongs to these",
     ),
+    warning(
+        "IRL729",
+        "{title}: the stream that it was made from has no blocks: verify fails it, and it cannot be replayed",
+        "convert the stream that the run wrote, in a format with blocks: {known}",
+    ),
     error(
         "IRL730",
         "it was not made from {name} as it is: its SHA-256 is {found}..., recorded is {recorded}...",
