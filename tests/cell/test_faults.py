@@ -11,6 +11,12 @@ ENTRY = "a number, a pair [lower, upper], or false"
 LIMIT = f"{ENTRY}, for each joint"
 
 
+@pytest.fixture
+def of_a_part(faults):
+    """Faults of a text that names no robot, without that one."""
+    return lambda text: [one for one in faults(text) if one[0] != "IRL610"]
+
+
 @pytest.mark.req("CELL-01")
 @pytest.mark.parametrize(
     ("text", "cause"),
@@ -61,7 +67,8 @@ def test_a_byte_order_mark_is_no_fault(cell, koch):
 def test_unknown_keys(cell, text, key, near, known):
     with pytest.raises(CellError) as caught:
         cell(text)
-    (found,) = caught.value.diagnostics
+    found, *others = caught.value.diagnostics
+    assert {one.code for one in others} <= {"IRL610"}
     assert (found.code, found.place.key) == ("IRL602", key)
     assert found.message == f"no such key: {key}{near}"
     assert found.help.startswith(f"keys known here: {known}")
@@ -97,10 +104,14 @@ def test_unknown_keys(cell, text, key, near, known):
             "a table",
         ),
         ("[robot.limits]\nspeed = 'a'\n", "robot.limits.speed", LIMIT, "'a'"),
+        ("[motion]\nc_pass = 1\n", "motion.c_pass", "true or false", "1"),
+        ("[motion]\nprofile = 'S'\n", "motion.profile", "'TRAPEZOID' or 'S_CURVE'", "'S'"),
+        ("[robot]\ntask = []\n", "robot.task", "one entry at least", "[]"),
+        ("[[constraint]]\nname = ''\n", "constraint[1].name", "a text that is not empty", "''"),
     ],
 )
-def test_values(faults, text, key, expected, found):
-    assert faults(text) == [("IRL603", key, f"{key}: expected {expected}, found {found}")]
+def test_values(of_a_part, text, key, expected, found):
+    assert of_a_part(text) == [("IRL603", key, f"{key}: expected {expected}, found {found}")]
 
 
 @pytest.mark.req("CELL-01")
@@ -115,32 +126,32 @@ def test_names_that_differ_in_case_alone(faults, table, value):
 
 
 @pytest.mark.req("CELL-01")
-def test_whole_numbers_beyond_all_others(faults):
-    ((code, key, message),) = faults(f"[signals.inputs]\nIN_1 = [[0, 1{'0' * 400}]]\n")
+def test_whole_numbers_beyond_all_others(of_a_part):
+    ((code, key, message),) = of_a_part(f"[signals.inputs]\nIN_1 = [[0, 1{'0' * 400}]]\n")
     assert (code, key) == ("IRL603", "signals.inputs.IN_1")
     assert "a list of pairs [time in s, value], true or false or a number, found [[0, 1000" in message
 
 
 @pytest.mark.req("CELL-01")
 @pytest.mark.parametrize("section", ["robot", "motion", "frames", "frames.f", "robot.locked", "robot.limits"])
-def test_sections_are_tables(faults, section):
-    ((code, key, message),) = faults(f"{section} = 3\n")
+def test_sections_are_tables(of_a_part, section):
+    ((code, key, message),) = of_a_part(f"{section} = 3\n")
     assert (code, key) == ("IRL603", section)
     assert message.endswith("found 3")
 
 
 @pytest.mark.req("CELL-01")
 @pytest.mark.parametrize("text", ["robot = 3\n", "[frames]\nf = 3\n", "[frames]\nf = { xyz = [1, 2] }\n"])
-def test_messages_speak_of_the_file(faults, text):
-    ((_, _, message),) = faults(text)
+def test_messages_speak_of_the_file(of_a_part, text):
+    ((_, _, message),) = of_a_part(text)
     assert "instance of" not in message
     assert "validation" not in message
 
 
 @pytest.mark.req("CELL-01")
 @pytest.mark.parametrize("entry", ["true", "'a'", "[1, 2, 3]", "inf", "[1, 'b']"])
-def test_the_entry_of_a_limit_is_named(faults, entry):
-    ((code, key, _),) = faults(f"[robot.limits]\nspeed = [1, {entry}, 3]\n")
+def test_the_entry_of_a_limit_is_named(of_a_part, entry):
+    ((code, key, _),) = of_a_part(f"[robot.limits]\nspeed = [1, {entry}, 3]\n")
     assert (code, key) == ("IRL603", "robot.limits.speed[2]")
 
 
@@ -326,3 +337,64 @@ def test_no_cell_file_found(tmp_path):
     assert (caught.value.reason.code, caught.value.reason.message) == ("IRL609", message)
     tried[1].touch()
     assert find_cell(tried, None) == tried[1]
+
+
+WRONG = """[robot]
+{model}
+start = [0, 0, 0, 0]
+[robot.limits]
+position = [[170, -170], 120, 170, 150, 170, 120, 170]
+speed = [100, 100]
+acceleration = 100
+[motion]
+tick = 10
+[frames]
+table = { xyz = [600, 0] }
+[[obstacle]]
+name = "wall"
+shape = "box"
+size = [400, 20]
+frame = "table"
+margin = 50
+influence = 20
+[[obstacle]]
+name = "post"
+shape = "cube"
+"""
+OF_SCHEMA = {
+    ("IRL603", "robot.limits.acceleration"),
+    ("IRL602", "motion.tick"),
+    ("IRL603", "frames.table.xyz"),
+    ("IRL603", "obstacle[1].size"),
+}
+OF_OBSTACLES = {("IRL633", "obstacle[1].margin"), ("IRL630", "obstacle[2].shape")}
+
+
+@pytest.mark.req("CELL-01")
+def test_what_a_key_may_hold_and_what_the_robot_says_is_told_at_once(faults):
+    """The box lacks no size, which is only at fault; a start that is no posture is not held against limits."""
+    found = faults(WRONG.replace("{model}", 'model = "arm7"'))
+    of_robot = {
+        ("IRL605", "robot.limits.position[1]"),
+        ("IRL604", "robot.limits.speed"),
+        ("IRL604", "robot.start"),
+    }
+    assert len(found) == len({(code, key) for code, key, _ in found})
+    assert {(code, key) for code, key, _ in found} == OF_SCHEMA | of_robot | OF_OBSTACLES
+
+
+@pytest.mark.req("CELL-01")
+@pytest.mark.parametrize(
+    ("model", "more"),
+    [
+        ('model = "arm8"', {("IRL611", "robot.model")}),
+        # The model that is missing is the one with a slip in its key.
+        ('modell = "arm7"', {("IRL602", "robot.modell")}),
+        ('model = "arm8"\nmodell = "arm7"', {("IRL611", "robot.model"), ("IRL602", "robot.modell")}),
+        # The joints would be others.
+        ('model = "arm7"\ntip = 3', {("IRL603", "robot.tip")}),
+    ],
+)
+def test_without_a_robot_all_else_is_told(faults, model, more):
+    found = {(code, key) for code, key, _ in faults(WRONG.replace("{model}", model))}
+    assert found == OF_SCHEMA | more | OF_OBSTACLES

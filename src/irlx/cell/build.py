@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from math import cos, inf, radians, sin
 from typing import Any, Literal
 
@@ -26,13 +26,19 @@ Array = NDArray[np.float64]
 _KINDS = ("position", "speed", "acceleration")
 
 
-def build_cell(content: CellFile, robot_section: RobotSection, robot: RobotDescription, file: str) -> Cell:
+def build_cell(
+    content: CellFile,
+    robot_section: RobotSection,
+    robot: RobotDescription,
+    file: str,
+    faults: Sequence[Diagnostic] = (),
+) -> Cell:
     """Cell of a robot. Raises CellError with every fault found: IRL604 to IRL606, IRL620, IRL647,
-    and those of `read_scene`.
+    and those of `read_scene`, behind the `faults` that the file is known to have.
 
-    Lists of wrong length stop the checks that need them, no others.
+    Lists of wrong length stop the checks that need them, no others; faults those of the start posture.
     """
-    errors: list[Diagnostic] = []
+    errors = [*faults]
     count = len(robot.axes)
     limits = limits_of(robot_section.limits, robot, file, errors)
     start = _joint_list(robot_section.start, "robot.start", [0.0] * count, count, file, errors)

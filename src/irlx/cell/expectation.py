@@ -7,6 +7,9 @@ from typing import Any
 
 _WORDS = {
     "string_type": "a text",
+    "string_too_short": "a text that is not empty",
+    "bool_type": "true or false",
+    "literal_error": "{expected}",
     "float_type": "a number",
     "finite_number": "a finite number",
     "greater_than": "a number greater than {gt:g}",
@@ -28,8 +31,12 @@ def expectation(fault: Any) -> str:
         return "a table"
     if kind == "missing":
         return f"a table with {fault['loc'][-1]}"
+    if kind == "too_short" and fault["ctx"]["min_length"] == 1:
+        return "one entry at least"
     if kind not in _WORDS:
         return str(fault["msg"])
+    if kind == "literal_error" and "," in fault["ctx"]["expected"]:
+        return f"one of {fault['ctx']['expected']}"
     data = {name: _COUNTS.get(value, value) if "length" in name else value for name, value in _data(fault)}
     return _WORDS[kind].format_map(data)
 

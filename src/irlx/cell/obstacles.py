@@ -34,6 +34,7 @@ def read_obstacles(
     obstacles: dict[str, Obstacle] = {}
     for index, section in enumerate(content.obstacle):
         findings = Findings(file, f"obstacle[{index + 1}]", errors, warnings)
+        _check_margin(section, findings)
         if sizes_fit(section, findings) and section.shape != "group":
             obstacle = _obstacle(section, frames, Path(file).parent, findings)
             obstacles.setdefault(obstacle.name.casefold(), obstacle)
@@ -44,9 +45,6 @@ def _obstacle(section: ObstacleSection, frames: Frames, folder: Path, findings: 
     """An obstacle; where something is wrong with it, without what is: `findings` tells then."""
     base = base_of(section, frames, findings)
     _check_times(section.trajectory or [], findings)
-    if section.margin > section.influence:
-        margin, influence = told_apart(section.margin, section.influence)
-        findings.error("IRL633", "margin", margin=margin, influence=influence)
     shape = solid_shape(section, folder, findings)
     trajectory = tuple(
         Waypoint(waypoint.time, base.of(_pose(waypoint))) for waypoint in section.trajectory or ()
@@ -83,6 +81,12 @@ def _pose(section: FrameSection | ObstacleSection | WaypointSection) -> Placemen
     x, y, z = (value * 1e-3 for value in section.xyz)
     turns: Vector3 = (radians(section.rpy[0]), radians(section.rpy[1]), radians(section.rpy[2]))
     return Placement.from_rpy((x, y, z), turns)
+
+
+def _check_margin(section: ObstacleSection, findings: Findings) -> None:
+    if section.shape != "group" and section.margin > section.influence:
+        margin, influence = told_apart(section.margin, section.influence)
+        findings.error("IRL633", "margin", margin=margin, influence=influence)
 
 
 def _check_times(waypoints: list[WaypointSection], findings: Findings) -> None:

@@ -71,8 +71,11 @@ def report(
 
 def near_matches(name: str, known: list[str] | tuple[str, ...]) -> str:
     """Clause with the known names most like `name`, for example ``; did you mean 'p1'?``, or ''."""
+    close = near_names(name, known)
+    return "; did you mean " + " or ".join(f"'{found}'" for found in close) + "?" if close else ""
+
+
+def near_names(name: str, known: list[str] | tuple[str, ...]) -> list[str]:
+    """The known names most like `name`, at most three, the most like first."""
     by_fold = {candidate.casefold(): candidate for candidate in known}
-    close = get_close_matches(name.casefold(), list(by_fold), n=3, cutoff=0.6)
-    if not close:
-        return ""
-    return "; did you mean " + " or ".join(f"'{by_fold[fold]}'" for fold in close) + "?"
+    return [by_fold[fold] for fold in get_close_matches(name.casefold(), list(by_fold), n=3, cutoff=0.6)]
