@@ -372,7 +372,7 @@ OF_OBSTACLES = {("IRL633", "obstacle[1].margin"), ("IRL630", "obstacle[2].shape"
 
 @pytest.mark.req("CELL-01")
 def test_what_a_key_may_hold_and_what_the_robot_says_is_told_at_once(faults):
-    """The box lacks no size, which is only at fault; a start that is no posture is not held against limits."""
+    """The box lacks no size, which is at fault; a start that is no posture is held against no limits."""
     found = faults(WRONG.replace("{model}", 'model = "arm7"'))
     of_robot = {
         ("IRL605", "robot.limits.position[1]"),
