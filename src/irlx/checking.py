@@ -11,7 +11,7 @@ from irlx.interpreter.support import unsupported
 from irlx.language import tree
 from irlx.language.data_lists import in_order
 from irlx.language.suppression import BY_MOTION, unused_finding, without_ignored
-from irlx.program import Program, ProgramError, analyse_with_program
+from irlx.program import Program, ProgramError, analyse_with_program, faults_of_found_cell
 
 if TYPE_CHECKING:
     from irlx.given_inputs import InputsGiven
@@ -30,15 +30,16 @@ def check(
     """All findings on a program, and on a cell file where one is given; raises nothing for its input.
 
     Names of frames and the number of joints come from `cell`, or from the cell that a run would find; of that
-    one nothing else is looked at. With `motion` a program without errors is executed in a dry run, at a
-    coarse tick, in the cell that a run would take; `max_steps`, `inputs` and `files` are those of `irlx.run`.
+    one is told that it cannot be read, nothing else. With `motion` a program without errors is executed in a
+    dry run, at a coarse tick, in the cell that a run would take; `max_steps`, `inputs` and `files` are those of
+    `irlx.run`.
     Without `cell` and `motion` this loads neither numpy nor Pinocchio.
     """
     of_cell = [] if cell is None else _cell_findings(cell)
     try:
         analysis, ready = analyse_with_program(program, cell)
     except ProgramError as error:
-        return list(error.diagnostics)
+        return [*error.diagnostics, *of_cell]
     found = list(analysis.diagnostics)
     if isinstance(analysis.tree, tree.Program):
         later = unsupported(analysis.tree, analysis.source, analysis.data_lists, analysis.modules)
@@ -46,6 +47,8 @@ def check(
         if moves and ready is not None:
             in_motion, of_cell = _motion_findings(ready, cell, max_steps, inputs, files)
             later = [*later, *in_motion]
+        elif cell is None:
+            of_cell = faults_of_found_cell(program, analysis.tree)
         kept, unused = without_ignored(later, analysis.ignores)
         found += kept
         known_later = frozenset() if moves else BY_MOTION

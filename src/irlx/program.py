@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from irlx.blocks import Origin
 from irlx.cell.find import find_cell, is_file
 from irlx.cell.frame_names import frame_names
-from irlx.cell.known import KnownCell, known_of, known_of_file
+from irlx.cell.known import KnownCell, known_of, known_of_file, unreadable
 from irlx.diagnostics import Diagnostic, IrlxError, Place, SourceText, Span, report
 from irlx.diagnostics.near_files import near_files, near_names
 from irlx.diagnostics.whole_file import whole_file
@@ -367,6 +367,12 @@ def _found_names(path: Path, root: tree.Program | tree.Module) -> Mapping[str, b
     """Names of the frames of the cell that a run of this file would find, None where there is none."""
     cell = _found_cell(path, root)
     return None if cell is None else frame_names(cell)
+
+
+def faults_of_found_cell(path: PathLike, root: tree.Program | tree.Module) -> list[Diagnostic]:
+    """Why the cell that a run of a file would find cannot be read; what it says is not looked at."""
+    cell = _found_cell(Path(path), root)
+    return [] if cell is None else unreadable(cell)
 
 
 def _found_cell(path: Path, root: tree.Program | tree.Module) -> Path | None:

@@ -126,6 +126,17 @@ def test_check_takes_several_programs_and_a_cell(inside, folder):
     assert done.stderr.startswith("p.toml: robot.limits.acceleration: warning IRL621: ")
 
 
+def test_a_cell_that_cannot_be_read_is_told_by_a_check(inside, folder):
+    """The one that is found as well as one that is given, also beside a program that is not there."""
+    (folder / "p.toml").write_text("[robot\n")
+    done = inside("check", "p.irl")
+    assert (done.returncode, done.stdout) == (2, "p.irl: 1 error, 0 warnings\n")
+    assert done.stderr.startswith("p.toml: error IRL601: ")
+    done = inside("check", "none.irl", "--cell", "none.toml")
+    assert done.stdout == "none.irl: 2 errors, 0 warnings\n"
+    assert [name in done.stderr for name in ("none.irl", "none.toml")] == [True, True]
+
+
 @pytest.mark.parametrize("name", ["cells.toml", "p.toml"])
 def test_the_cell_is_found_beside_the_program(inside, folder, name):
     text = (folder / "p.irl").read_text().replace("PROGRAM p;", "PROGRAM p;\nSYSTEM SPECIFICATION cells;")

@@ -7,8 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from irlx.cell.errors import CellError
 from irlx.cell.frame_names import cell_table, frame_names
 from irlx.cell.obstacle_names import obstacle_names
+from irlx.cell.toml import cell_toml
+from irlx.diagnostics import Diagnostic, Place, report
+from irlx.diagnostics.whole_file import whole_file
 
 if TYPE_CHECKING:
     from irlx.cell.cell import Cell
@@ -50,6 +54,18 @@ def known_of_file(path: Path) -> KnownCell:
     # A cell that is no TOML has no names to miss.
     obstacles = obstacle_names(path) if cell_table(path) else None
     return KnownCell(frame_names(path), obstacles, joint_names(path))
+
+
+def unreadable(path: Path) -> list[Diagnostic]:
+    """Why nothing of a cell file can be read: IRL601 where it is no TOML; none where it can."""
+    try:
+        cell_toml(whole_file(path), str(path))
+    except CellError as error:
+        return list(error.diagnostics)
+    except (OSError, ValueError) as cause:
+        words = cause.strerror if isinstance(cause, OSError) and cause.strerror else str(cause)
+        return [report("IRL002", Place(str(path)), path=path, cause=words)]
+    return []
 
 
 def known_of(cell: Cell) -> KnownCell:

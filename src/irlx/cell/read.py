@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from copy import copy
@@ -26,13 +25,9 @@ from irlx.cell.schema import (
     SignalsSection,
     WaypointSection,
 )
+from irlx.cell.toml import cell_toml
 from irlx.diagnostics import Diagnostic, Place, report
 from irlx.diagnostics.diagnostic import near_matches, near_names
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
 
 _ROUNDS = 4
 """So often what is at fault is taken out: without one key another table may lack something."""
@@ -40,7 +35,6 @@ _DECIDES_ON_ROBOT = tuple(
     f"robot.{key}" for key in ("tip", "locked", "origins", "task", "task_frame", "free", "hands")
 )
 """Keys that decide on the joints and the task."""
-_BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 _SECTIONS: dict[tuple[str, ...], type[BaseModel]] = {
     (): CellFile,
     ("robot",): RobotSection,
@@ -88,15 +82,7 @@ def read_cell_file(content: bytes, file: str) -> CellFile:
 
 def read_in_parts(content: bytes, file: str) -> ReadCell:
     """What can be used of a cell file named `file`. Raises CellError, IRL601, for what is not TOML."""
-    try:
-        # Editors that put a byte-order mark before UTF-8 do so with cells as they do with programs.
-        table = tomllib.loads(content.removeprefix(_BYTE_ORDER_MARK).decode("utf-8"))
-    except UnicodeDecodeError as cause:
-        message = f"byte {cause.start} is no UTF-8"
-        raise CellError(report("IRL601", Place(file), cause=message)) from cause
-    except (ValueError, RecursionError) as cause:
-        # Besides its own errors tomllib lets those of Python through: too many digits, too deep lists.
-        raise CellError(report("IRL601", Place(file), cause=str(cause))) from cause
+    table = cell_toml(content, file)
     faults: dict[str, Diagnostic] = {}
     wrong = set[str]()
     for _ in range(_ROUNDS):
