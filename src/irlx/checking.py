@@ -31,7 +31,7 @@ def check(
 
     Names of frames and the number of joints come from `cell`, or from the cell that a run would find; of that
     one is told that it cannot be read, nothing else. With `motion` a program without errors is executed in a
-    dry run, at a coarse tick, in the cell that a run would take; `max_steps`, `inputs` and `files` are those of
+    dry run, at a coarse tick, in the cell that a run would take; `max_steps`, `inputs` and `files` are as in
     `irlx.run`.
     Without `cell` and `motion` this loads neither numpy nor Pinocchio.
     """

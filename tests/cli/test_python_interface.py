@@ -66,8 +66,9 @@ def test_check_raises_nothing(folder):
     assert [d.code for d in irlx.check(folder / "q.irl")] == ["IRL001"]
     assert [d.code for d in irlx.check(folder / "p.irl", cell=folder / "q.toml")] == ["IRL001"]
     (folder / "p.toml").write_text("[robot]\nmodel = 'koch'\n[motion]\nspeed = 0\n")
-    (finding,) = irlx.check(folder / "p.irl", cell=folder / "p.toml")
+    finding, other = irlx.check(folder / "p.irl", cell=folder / "p.toml")
     assert str(finding).startswith(f"{folder / 'p.toml'}: motion.speed: error IRL603: ")
+    assert (other.code, other.place.key) == ("IRL611", "robot.model")
 
 
 def test_run(folder, short_run):
@@ -310,11 +311,19 @@ def test_frames_of_a_cell_elsewhere(folder):
 
 
 @pytest.mark.req("CELL-01")
-@pytest.mark.parametrize("text", [b"[frames\n", b"\xff", b"frames = 3\n", b"frames = [1]\n"])
-def test_a_broken_cell_is_told_once(folder, text):
+@pytest.mark.parametrize(
+    ("text", "found", "given"),
+    [
+        (b"[frames\n", ["IRL601"], ["IRL601"]),
+        (b"\xff", ["IRL601"], ["IRL601"]),
+        (b"frames = 3\n", [], ["IRL603", "IRL610"]),
+        (b"frames = [1]\n", [], ["IRL603", "IRL610"]),
+    ],
+)
+def test_a_broken_cell_is_told_once(folder, text, found, given):
     (folder / "p.toml").write_bytes(text)
-    assert irlx.check(folder / "p.irl") == []
-    assert len(irlx.check(folder / "p.irl", cell=folder / "p.toml")) == 1
+    assert [one.code for one in irlx.check(folder / "p.irl")] == found
+    assert [one.code for one in irlx.check(folder / "p.irl", cell=folder / "p.toml")] == given
 
 
 @pytest.mark.req("CELL-01")
