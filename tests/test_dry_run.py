@@ -158,6 +158,17 @@ def test_which_targets_of_a_line_cannot_be_reached(tmp_path, move, code) -> None
     (one,) = found
     assert "(800, 200, 324) mm" in one.message
     assert one.message.endswith("; so it is once more, for (900, 200, 324) mm")
+    assert [(related.message, related.place.line) for related in one.related] == [("called here", 10)]
+
+
+def test_a_run_tells_from_where_a_procedure_was_called(tmp_path) -> None:
+    (tmp_path / "t.toml").write_text('[robot]\nmodel = "arm7"\n')
+    (tmp_path / "t.irl").write_text(PLACES.format(move="PTP", first=800, last=0))
+    with pytest.raises(irlx.RunError) as caught:
+        irlx.run(tmp_path / "t.irl")
+    reason = caught.value.reason
+    assert "(800, 200, 324) mm" in reason.message
+    assert [(related.message, related.place.line) for related in reason.related] == [("called here", 10)]
 
 
 def test_a_line_that_fails_all_the_time_is_given_up(tmp_path) -> None:

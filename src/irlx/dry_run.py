@@ -141,6 +141,7 @@ class _DryExecution(Execution):
                     left = ()
                 except IrlxError as error:
                     failed = self._index_of_failed(left, done, error)
+                    self._called.tell(error, left[failed : failed + 1], self._locate)
                     self._go_beyond(left[failed], error)
                     left = left[failed + 1 :]
 
@@ -190,6 +191,7 @@ class _DryExecution(Execution):
             for _ in self._pacer.carry_out([replace(move, blend=None)]):
                 self._lost = None
         except IrlxError as error:
+            self._called.tell(error, [move], self._locate)
             self.tell(error.diagnostics)
             self._failures[move.origin] += 1
 

@@ -17,6 +17,7 @@ from irlx.cell.link_meshes import resolved_solids
 from irlx.cell.setting import setting_of
 from irlx.diagnostics import Diagnostic, IrlxError, Place, report
 from irlx.diagnostics.fault import fault
+from irlx.interpreter.called import Called
 from irlx.interpreter.channels.channels import Channels, Told
 from irlx.interpreter.interpret import Interpretation
 from irlx.job import Job, header_of, kinematics_of
@@ -80,6 +81,7 @@ class Execution:
         self.kinematics = setup.kinematics
         self._pacer = Pacer(setup, self._locate)
         self._interpretation: Interpretation | None = None
+        self._called = Called()
         self.left_open: list[Diagnostic] = []
         self.channels = job.channels.on_disk()
 
@@ -129,11 +131,21 @@ class Execution:
                     yield from self._all(ahead.before(item))
                     reply = self._answer(item)
                 else:
+                    self._called.take(item, self._calls)
                     yield from self._all(ahead.take(item))
+
+    @property
+    def _calls(self) -> tuple[Place, ...]:
+        """Where the routines that are under way were called."""
+        return () if self._interpretation is None else self._interpretation.calls
 
     def _all(self, groups: Sequence[tuple[Block, ...]]) -> Iterator[Executed]:
         for group in groups:
-            yield from self._pacer.carry_out(group)
+            try:
+                yield from self._pacer.carry_out(group)
+            except IrlxError as error:
+                self._called.tell(error, group, self._locate)
+                raise
 
     def corrected(self, senses: Senses, tally: Tally, nearness: Nearness) -> Iterator[CorrectedRow]:
         """Rows of the program, each followed as `senses` say to the one before; see `planned_share`."""

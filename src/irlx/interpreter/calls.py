@@ -93,7 +93,7 @@ class Calls:
         def make(following: int) -> Step:
             def step(frame: Frame) -> int:
                 arguments = [run(frame) for run in runs]
-                return machine.enter(code, arguments, (own, frame, following, slot), span)
+                return machine.enter(code, arguments, (own, frame, following, slot, span))
 
             return step
 

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
-from irlx.diagnostics import Diagnostic, SourceText
+from irlx.diagnostics import Diagnostic, Place, SourceText
 from irlx.interpreter.channels.channels import Channels
 from irlx.interpreter.code import Code, Step
 from irlx.interpreter.declare import Unit
@@ -73,7 +73,7 @@ class Interpretation:
 
     def _start(self, code: Code, program: tree.Program, following: int) -> Step:
         machine, outer, span = self._machine, self._code, program.name.span
-        return lambda frame: machine.enter(code, (), (outer, frame, following, -1), span)
+        return lambda frame: machine.enter(code, (), (outer, frame, following, -1, span))
 
     def run(self) -> Blocks:
         """Yield the blocks in order, and questions whose answers are sent back in; runs once.
@@ -84,6 +84,11 @@ class Interpretation:
         self._code.steps.append(end)
         self._code.spans.append(self._code.spans[-1])
         return self._machine.run(self._code)
+
+    @property
+    def calls(self) -> tuple[Place, ...]:
+        """Where the routines that are under way were called, the innermost first; some of them if many."""
+        return self._machine.calls
 
     @property
     def warnings(self) -> list[Diagnostic]:

@@ -12,12 +12,16 @@ from irlx.interpreter.errors import fail
 from irlx.interpreter.values import Value
 
 Answer: TypeAlias = "tuple[float, ...] | None"
+Caller: TypeAlias = "tuple[Code, Frame, int, int, Span]"
+"""Who waits for a call: body, frame, the step to go on with, the slot of the result, and where it calls."""
 Blocks: TypeAlias = "Generator[Block | Question, Answer, None]"
 
 MAX_STEPS = 10_000_000
 """Statements that a run may execute unless it is told otherwise."""
 MAX_DEPTH = 10_000
 """Calls that may wait for each other."""
+MOST_TOLD = 3
+"""Calls of which messages tell, from the innermost on."""
 MAX_VALUES = 20_000_000
 """Values that the variables of all waiting calls may hold together."""
 
@@ -30,7 +34,7 @@ class Machine:
 
     def __init__(self, max_steps: int = MAX_STEPS) -> None:
         self._max_steps = max_steps
-        self._waiting: list[tuple[Code, Frame, int, int]] = []
+        self._waiting: list[Caller] = []
         self._values = 0
         self._at: tuple[Code, Frame, int]
         self._blocks: Sequence[Block] = ()
@@ -50,6 +54,13 @@ class Machine:
         self._count += 1
         return self._count
 
+    @property
+    def calls(self) -> tuple[Place, ...]:
+        """Where the routines that are under way were called, the innermost at most, that one first."""
+        # The main statements wait as well, and nobody calls them.
+        waiting = self._waiting[1:][: -MOST_TOLD - 1 : -1]
+        return tuple(Place.in_text(code.source, span) for code, _, _, _, span in waiting)
+
     # ---- what steps call
 
     def emit(self, blocks: Sequence[Block], following: int) -> int:
@@ -62,19 +73,17 @@ class Machine:
         self._question, self._taken, self._next = question, taken, following
         return YIELD
 
-    def enter(
-        self, code: Code, arguments: Sequence[object], caller: tuple[Code, Frame, int, int], span: Span
-    ) -> int:
-        """Call a body with values of its first slots; `caller`: where to go on, and the slot of the result.
+    def enter(self, code: Code, arguments: Sequence[object], caller: Caller) -> int:
+        """Call a body with values of its first slots.
 
-        Raises InterpreterError, IRL511, at `span` where too many calls wait for each other.
+        Raises InterpreterError, IRL511, at the call where too many of them wait for each other.
         """
         waiting = self._waiting
         self._values += code.values
         # The main statements wait as well, and are no call.
         if len(waiting) > MAX_DEPTH or self._values > MAX_VALUES:
             told = {"depth": len(waiting), "most": MAX_DEPTH, "values": self._values, "held": MAX_VALUES}
-            raise fail("IRL511", caller[0].source, span, **told)
+            raise fail("IRL511", caller[0].source, caller[4], **told)
         waiting.append(caller)
         frame = code.blank.copy()
         frame[: len(arguments)] = arguments
@@ -86,7 +95,7 @@ class Machine:
         if not self._waiting:
             return END
         self._values -= code.values
-        caller, frame, following, slot = self._waiting.pop()
+        caller, frame, following, slot, _ = self._waiting.pop()
         if slot >= 0:
             frame[slot] = value
         self._at = (caller, frame, following)
