@@ -199,3 +199,18 @@ def test_a_coarse_row_is_told_by_its_tick(tmp_path) -> None:
         (dry,) = (one for one in irlx.check(tmp_path / "p.irl", motion=True) if one.is_error)
         assert dry.code == caught.value.reason.code == "IRL561"
         assert 0 <= dry.data["tick"] - caught.value.reason.data["tick"] < 10
+
+
+def test_a_band_that_few_knots_would_pass_is_no_error(tmp_path) -> None:
+    """Joints are so slow that the move is planned; between the knots of a dry run the bands swing too far."""
+    (tmp_path / "p.toml").write_text('[robot]\nmodel = "koch11"\n[motion]\ntick_ms = 50\n')
+    (tmp_path / "p.irl").write_text(
+        "PROGRAM p;\nVAR ORIENTATION: o := ORIQUAT(1, 0, 0, 0);\n"
+        "  MAIN_JOINT_SPEED_MIN: lo := (-11, -11, -1, -1, -11, -1, -11, -1, -34, -200, -34);\n"
+        "  MAIN_JOINT_SPEED_MAX: hi := (11, 11, 1, 1, 11, 1, 11, 1, 34, 200, 34);\n"
+        "BEGIN\n  MOVE LIN POSITION(11501, 1046, 3490) SPEED := 265;\n  JOINTSPEEDLIMIT lo, hi;\n"
+        "  MOVE LIN ((11482, 1064, 3497), o @ ORIZYX(-3, -6, 3.5)) ACC := 867\n"
+        "    WITH TOLERANCE (0, 300, 5, 1, 5, 0);\nENDPROGRAM;\n"
+    )
+    assert irlx.run(tmp_path / "p.irl").complete
+    assert motion_codes(irlx.check(tmp_path / "p.irl", motion=True)) == []

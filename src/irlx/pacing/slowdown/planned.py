@@ -20,7 +20,7 @@ from irlx.pacing.slowdown.clock import PlannedClock
 from irlx.pacing.slowdown.curve import JointCurve
 from irlx.pacing.slowdown.drawn_end import with_drawn_end
 from irlx.pacing.slowdown.elastic_walk import elastic_walk
-from irlx.pacing.slowdown.grid import PathGrid, acc_between, path_grid
+from irlx.pacing.slowdown.grid import FINE, PathGrid, acc_between, path_grid
 from irlx.pacing.slowdown.ladder import TimedCurve, inner_places, places_between, timed_curves
 from irlx.pacing.slowdown.model import Model
 from irlx.pacing.slowdown.resample import resample
@@ -123,7 +123,17 @@ def plan_motion(model: Model, task: MotionTask) -> PlannedMotion | Refusal:
 
     See docs/reference/pacing.md for the method and what it promises.
     """
-    model = replace(model, free=model.movable)
+    found = _planned_or_otherwise(replace(model, free=model.movable), task)
+    resolution = task.ticking.resolution
+    if isinstance(found, PlannedMotion) or found.broken is None or resolution.spacing == FINE:
+        return found
+    # Between the few knots of a dry run curves swing farther out than in a run.
+    fine = replace(task.ticking, resolution=replace(resolution, spacing=FINE))
+    return _planned_or_otherwise(replace(model, free=model.movable), replace(task, ticking=fine))
+
+
+def _planned_or_otherwise(model: Model, task: MotionTask) -> PlannedMotion | Refusal:
+    """The motion, with joints at rest that would only swing where it needs that."""
     narrow = model.narrow
     # A band of WITH TOLERANCE has no limits of its own; in a narrow one nothing is won.
     idle = narrow & model.limitless
