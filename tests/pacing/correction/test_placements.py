@@ -38,6 +38,16 @@ def test_nothing_new(answer: object) -> None:
     assert read_placements(answer, 3, SCENE, PLACE) == []
 
 
+class Odd:
+    """No array, and it says so in its own way."""
+
+    def __array__(self, *given, **named):
+        raise TypeError("not here")
+
+    def __len__(self):
+        raise RuntimeError("not even that")
+
+
 @pytest.mark.parametrize("pose", [(FARTHEST, -FARTHEST, 0), (0, 0, 0, pi, 0, 0)])
 def test_as_far_as_may_be_said(pose: tuple[float, ...]) -> None:
     (found,) = read_placements({"ball": pose}, 3, SCENE, PLACE)
@@ -53,13 +63,15 @@ def test_as_far_as_may_be_said(pose: tuple[float, ...]) -> None:
         ({"ball": (0, 0, 0), "Ball": (0, 0, 1)}, "'Ball' twice"),
         ({"ball": (0, 0)}, "tuple of 2 for 'ball'"),
         ({"ball": 3.0}, "float for 'ball'"),
+        ({"ball": np.array(3.0)}, "ndarray for 'ball'"),
+        ({"ball": Odd()}, "Odd for 'ball'"),
         ({"ball": "abc"}, "str of 3 for 'ball'"),
         ({"ball": [[1, 2], [3]]}, "list of 2 for 'ball'"),
         ({"ball": [True, False, True]}, "list of 3 for 'ball'"),
         ({"ball": (0, nan, inf)}, "0, nan, inf for 'ball'"),
         ({"ball": (0, -1000.5, 0)}, "a place 1000.5 m away, more than 1000, for 'ball'"),
         ({"ball": (0, 0, 0, 0, 3.2, 0)}, "a turn of 3.2 rad, more than half of one, for 'ball'"),
-        ({"ball": (0, 0, 0, 3, 3, 0)}, "a turn of 3 rad, more than half of one, for 'ball'"),
+        ({"ball": (0, 0, 0, 3, 3, 0)}, "a turn of 4.24264 rad, more than half of one, for 'ball'"),
     ],
 )
 def test_answers_that_are_none(answer: object, found: str) -> None:

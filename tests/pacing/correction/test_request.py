@@ -46,6 +46,16 @@ def test_an_answer_stays_as_it_is() -> None:
     np.testing.assert_array_equal(answer, np.arange(6.0) / 10)
 
 
+class Odd:
+    """No array, and it says so in its own way."""
+
+    def __array__(self, *given, **named):
+        raise TypeError("not here")
+
+    def __len__(self):
+        raise RuntimeError("not even that")
+
+
 @pytest.mark.parametrize(
     ("answer", "code", "found"),
     [
@@ -53,6 +63,8 @@ def test_an_answer_stays_as_it_is() -> None:
         ("abcdef", "IRL580", "str of 6"),
         ([[1, 2], [3]], "IRL580", "list of 2"),
         (4.0, "IRL580", "float"),
+        (np.array(4.0), "IRL580", "ndarray"),
+        (Odd(), "IRL580", "Odd"),
         ([True] * 6, "IRL580", "list of 6"),
         (["1"] * 6, "IRL580", "list of 6"),
         (np.zeros((6, 1)), "IRL580", "ndarray of (6, 1)"),
@@ -67,12 +79,14 @@ def test_answers_that_are_none(answer: object, code: str, found: str) -> None:
     assert (told.code, told.data["found"], told.data["tick"], told.place) == (code, found, 7, PLACE)
 
 
-@pytest.mark.parametrize("answer", [(0, 0, FARTHEST, 0, 0, 0), (0, 0, 0, 0, pi, 0)])
+@pytest.mark.parametrize(
+    "answer", [(0, 0, FARTHEST, 0, 0, 0), (0, 0, 0, 0, pi, 0), (0, 0, 0, 0, np.nextafter(pi, 4), 0)]
+)
 def test_as_far_as_may_be_asked(answer: tuple[float, ...]) -> None:
     np.testing.assert_array_equal(read(answer), answer)
 
 
-@pytest.mark.parametrize("answer", [(0, 0, 1000.001, 0, 0, 0), (0, 0, 0, 0, np.nextafter(pi, 4), 0)])
+@pytest.mark.parametrize("answer", [(0, 0, 1000.001, 0, 0, 0), (0, 0, 0, 0, pi + 1e-9, 0)])
 def test_too_far(answer: tuple[float, ...]) -> None:
     with pytest.raises(PacingError) as caught:
         read(answer)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import pi
+from math import hypot
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from irlx.diagnostics import Diagnostic, Place, report
 from irlx.diagnostics.diagnostic import near_matches
+from irlx.pacing.correction.answer import HALF_TURN, numbers_in, told_answer
 from irlx.pacing.errors import PacingError
 from irlx.scene.scene import Scene
 
@@ -64,18 +65,14 @@ def _numbers(name: str, pose: object, tick: int, place: Place | None) -> Array:
     def wrong(why: str) -> PacingError:
         return PacingError(report("IRL585", place, tick=tick, found=f"{why} for '{name}'"))
 
-    try:
-        found = np.array(pose)
-    except ValueError:
-        found = np.array(None)
-    if found.shape not in ((3,), (6,)) or found.dtype.kind not in "iuf":
-        size = len(pose) if hasattr(pose, "__len__") else None
-        raise wrong(type(pose).__name__ if size is None else f"{type(pose).__name__} of {size}")
-    numbers = found.astype(np.float64)
+    numbers = numbers_in(pose)
+    if numbers is None or numbers.shape not in ((3,), (6,)):
+        raise wrong(told_answer(pose))
     if not np.all(np.isfinite(numbers)):
         raise wrong(", ".join(f"{value:.6g}" for value in numbers))
     if np.max(np.abs(numbers[:3])) > FARTHEST:
         raise wrong(f"a place {np.max(np.abs(numbers[:3])):.6g} m away, more than {FARTHEST:g},")
-    if np.max(np.abs(numbers[3:]), initial=0.0) > pi or np.linalg.norm(numbers[3:]) > pi:
-        raise wrong(f"a turn of {np.max(np.abs(numbers[3:])):.6g} rad, more than half of one,")
+    angle = hypot(*numbers[3:].tolist())
+    if angle > HALF_TURN:
+        raise wrong(f"a turn of {angle:.6g} rad, more than half of one,")
     return numbers

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from math import pi
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from irlx.diagnostics import Place, report
+from irlx.pacing.correction.answer import HALF_TURN, numbers_in, told_answer
 from irlx.pacing.correction.tool_offset import parts
 from irlx.pacing.errors import PacingError
 from irlx.robot.task import Task
@@ -28,17 +28,13 @@ def read_request(answer: object, tick: int, task: Task, place: Place) -> Array |
     """
     if answer is None:
         return None
-    try:
-        found = np.array(answer)
-    except ValueError:
-        found = np.array(None)
-    if found.shape != (SIZE,) or found.dtype.kind not in "iuf":
-        raise PacingError(report("IRL580", place, tick=tick, found=_told(answer)))
-    request = found.astype(np.float64)
+    request = numbers_in(answer)
+    if request is None or request.shape != (SIZE,):
+        raise PacingError(report("IRL580", place, tick=tick, found=told_answer(answer)))
     if not np.all(np.isfinite(request)):
         raise PacingError(report("IRL581", place, tick=tick, found=_numbers(request)))
     distance, angle = parts(request)
-    if distance > FARTHEST or angle > pi:
+    if distance > FARTHEST or angle > HALF_TURN:
         told: dict[str, Any] = {
             "distance": f"{distance:.6g}",
             "angle": f"{angle:.6g}",
@@ -52,10 +48,3 @@ def read_request(answer: object, tick: int, task: Task, place: Place) -> Array |
 
 def _numbers(request: Array) -> str:
     return ", ".join(f"{value:.6g}" for value in request)
-
-
-def _told(answer: object) -> str:
-    """What a wrong answer is, in a few words."""
-    size = getattr(answer, "shape", None) or (len(answer) if hasattr(answer, "__len__") else None)
-    kind = type(answer).__name__
-    return kind if size is None else f"{kind} of {size}"
