@@ -8,7 +8,7 @@ import pytest
 from irlx.motion.trapezoid import Trapezoid
 from irlx.pacing.slowdown.clock import PlannedClock
 from irlx.pacing.slowdown.clock_bounds import PATH, Governor
-from irlx.pacing.slowing import slowings
+from irlx.pacing.slowing import slowings, told_in_ticks
 
 pytestmark = pytest.mark.req("MOT-21")
 
@@ -91,3 +91,20 @@ def test_the_path_is_named_only_where_no_joint_is() -> None:
     assert found.joint == 1
     (alone,) = slowings(clock((0.4, 0.5, 0.4, Governor.PROGRAM, PATH)), RATES, 1.0, 0.01, 400)
     assert (alone.joint, alone.governor) == (PATH, Governor.PROGRAM)
+
+
+def test_in_whole_ticks_the_time_told_is_that_by_which_the_motion_is_longer() -> None:
+    planned = clock((0.2, 0.3, 0.5, Governor.SPEED, 0), (0.6, 0.7, 0.8, Governor.SPEED, 3))
+    found = slowings(planned, RATES, 1.0, 0.01, 400)
+    told = told_in_ticks(found, 0.3)
+    assert sum(part.lost for part in told) == pytest.approx(0.3, rel=1e-12)
+    assert told[0].lost / told[1].lost == pytest.approx(found[0].lost / found[1].lost, rel=1e-12)
+    assert [(part.s, part.joint) for part in told] == [(part.s, part.joint) for part in found]
+
+
+@pytest.mark.parametrize("later", [0.0, -0.01])
+def test_a_motion_that_takes_no_longer_is_not_slowed(later: float) -> None:
+    found = slowings(clock((0.4, 0.41, 0.99, Governor.SPEED, 2)), RATES, 1.0, 0.01, 251)
+    assert len(found) == 1
+    assert told_in_ticks(found, later) == ()
+    assert told_in_ticks((), 0.1) == ()

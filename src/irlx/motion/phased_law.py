@@ -19,7 +19,8 @@ class PhasedLaw:
 
     `times`, `ways`, `rates` (K + 1,): time, way and rate ds/dt at the ends of the phases, from 0; `starts`
     (K,): d2s/dt2 at the start of each phase; `jerks` (K,): d3s/dt3 in it. No phase changes the sign of its
-    acceleration. `allowed` (K,): largest |d2s/dt2| that the program allows there.
+    acceleration. `allowed` (K,): largest |d2s/dt2| that the program allows there, and
+    `allowed_jerks` (K,) largest |d3s/dt3|, infinite where accelerations may jump.
     """
 
     times: Array
@@ -28,6 +29,7 @@ class PhasedLaw:
     starts: Array
     jerks: Array
     allowed: Array
+    allowed_jerks: Array
 
     @property
     def length(self) -> float:
@@ -79,9 +81,11 @@ class PhasedLaw:
 
     def acc_at(self, s: Array) -> Array:
         """Largest |d2s/dt2| that the program allows at the ways s (N,); where phases meet the smaller one."""
-        s = np.clip(s, 0.0, self.length)
-        left = np.clip(np.searchsorted(self.ways, s, side="left") - 1, 0, len(self.jerks) - 1)
-        return np.asarray(np.minimum(self.allowed[left], self.allowed[self._phase(self.ways, s)]))
+        return self._smaller(self.allowed, s)
+
+    def jerk_at(self, s: Array) -> Array:
+        """Largest |d3s/dt3| that is allowed at the ways s (N,); where phases meet the smaller one."""
+        return self._smaller(self.allowed_jerks, s)
 
     def stretched(self, duration: float) -> PhasedLaw:
         """Same shape in another time: every rate falls by the factor by which time grows."""
@@ -95,6 +99,7 @@ class PhasedLaw:
             starts=self.starts / factor**2,
             jerks=self.jerks / factor**3,
             allowed=self.allowed / factor**2,
+            allowed_jerks=self.allowed_jerks / factor**3,
         )
 
     def _at(self, s: Array) -> tuple[Array, Array]:
@@ -112,6 +117,12 @@ class PhasedLaw:
         tau = shares_of_phases(way, rate, acc, self.jerks[k], spans)
         rates = np.maximum(swept(rate, acc, self.jerks[k], tau)[1], 0.0)
         return np.where(back, self.times[k + 1] - tau, self.times[k] + tau), rates
+
+    def _smaller(self, of_phases: Array, s: Array) -> Array:
+        """Of values (K,) of the phases that of each way s (N,); where phases meet the smaller one."""
+        s = np.clip(s, 0.0, self.length)
+        left = np.clip(np.searchsorted(self.ways, s, side="left") - 1, 0, len(self.jerks) - 1)
+        return np.asarray(np.minimum(of_phases[left], of_phases[self._phase(self.ways, s)]))
 
     def _phase(self, ends: Array, values: Array) -> NDArray[np.intp]:
         """Phase (N,) in which each of the values (N,) lies, between those at the ends of phases (K + 1,)."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import fsum
+from math import fsum, inf
 
 import numpy as np
 
@@ -19,13 +19,21 @@ class Phases:
         self._starts: list[float] = []
         self._jerks: list[float] = []
         self._allowed: list[float] = []
+        self._allowed_jerks: list[float] = []
 
     def add(
-        self, span: float, way: float, rate: float, allowed: float, start: float = 0.0, jerk: float = 0.0
+        self,
+        span: float,
+        way: float,
+        rate: float,
+        allowed: float,
+        start: float = 0.0,
+        jerk: float = 0.0,
+        allowed_jerk: float = inf,
     ) -> None:
         """A phase of `span` s over `way` that ends at `rate`; nothing where it takes no time.
 
-        It begins with the acceleration `start` and keeps `jerk`; `allowed` acceleration of its place.
+        It begins with the acceleration `start` and keeps `jerk`; `allowed` and `allowed_jerk` bound its place.
         """
         if not (span > 0.0 and way > 0.0):
             return
@@ -35,6 +43,7 @@ class Phases:
             and self._jerks[-1] == 0.0
             and start == self._starts[-1]
             and allowed == self._allowed[-1]
+            and allowed_jerk == self._allowed_jerks[-1]
         ):
             self._spans[-1] += span
             self._ways[-1] += way
@@ -46,6 +55,7 @@ class Phases:
         self._starts.append(start)
         self._jerks.append(jerk)
         self._allowed.append(allowed)
+        self._allowed_jerks.append(allowed_jerk)
 
     def law(self, length: float) -> PhasedLaw:
         """The law of all phases; their ways, `length` but for rounding, are made to end exactly there."""
@@ -61,4 +71,5 @@ class Phases:
             np.array(self._starts),
             np.array(self._jerks),
             np.array(self._allowed),
+            np.array(self._allowed_jerks),
         )

@@ -56,7 +56,7 @@ def add_s_curve(
     _add_change(phases, first, peak, acc, jerk)
     flat = way - up - down
     if flat > 0.0:
-        phases.add(flat / peak, flat, peak, acc)
+        phases.add(flat / peak, flat, peak, acc, allowed_jerk=jerk)
     _add_change(phases, peak, last, acc, jerk)
 
 
@@ -96,6 +96,6 @@ def _add_change(phases: Phases, first: float, last: float, acc: float, jerk: flo
     into = bent * (rates[0] + sign * top * bent / 6.0)
     even = 0.5 * steady * (rates[1] + rates[2])
     out = bent * (rates[3] - sign * top * bent / 6.0)
-    phases.add(bent, into, rates[1], acc, 0.0, sign * jerk)
-    phases.add(steady, even, rates[2], acc, sign * top)
-    phases.add(bent, out, rates[3], acc, sign * top, -sign * jerk)
+    phases.add(bent, into, rates[1], acc, 0.0, sign * jerk, jerk)
+    phases.add(steady, even, rates[2], acc, sign * top, 0.0, jerk)
+    phases.add(bent, out, rates[3], acc, sign * top, -sign * jerk, jerk)

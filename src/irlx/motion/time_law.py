@@ -56,6 +56,10 @@ class TimeLaw(Protocol):
         """Largest |d2s/dt2| that is allowed at the ways s (N,)."""
         ...
 
+    def jerk_at(self, s: Array) -> Array:
+        """Largest |d3s/dt3| that is allowed at the ways s (N,); infinite where the law bounds none."""
+        ...
+
     def stretched(self, duration: float) -> TimeLaw:
         """Same shape in another time (s, > 0): every rate falls by the factor by which time grows."""
         ...

@@ -65,6 +65,10 @@ class Trapezoid:
         """Largest |d2s/dt2| that is allowed at the ways s (N,): that of the ramps."""
         return np.full(np.shape(s), self.acc)
 
+    def jerk_at(self, s: Array) -> Array:
+        """Largest |d3s/dt3| that is allowed at the ways s (N,): its acceleration jumps."""
+        return np.full(np.shape(s), np.inf)
+
     def stretched(self, duration: float) -> Trapezoid:
         """Same shape in another time: every speed falls by the factor by which time grows."""
         factor = duration / self.duration

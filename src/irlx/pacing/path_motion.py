@@ -18,7 +18,7 @@ from irlx.pacing.resolution import EVERY_TICK, Resolution
 from irlx.pacing.row_check import BrokenBound, broken_bound
 from irlx.pacing.slowdown.model import Model
 from irlx.pacing.slowdown.planned import MotionTask, PlannedMotion, Refusal, Ticking, plan_motion
-from irlx.pacing.slowing import Slowing, slowings
+from irlx.pacing.slowing import Slowing, slowings, told_in_ticks
 from irlx.pacing.swinging import swings
 from irlx.pacing.touching import touching
 from irlx.pacing.walk import Halt, Walk, walk
@@ -254,14 +254,16 @@ def _task(motion: PathMotion, undisturbed: Callable[[Array], Array] | None) -> M
 def _planned(motion: PathMotion, model: Model, found: PlannedMotion) -> PacedPath:
     clock = found.timed.clock
     rates = motion.plan.programmed.rates_at(clock.s)
-    dt = motion.dt * (int(found.demands.tick[-1]) + 1 - motion.first_tick) / len(found.q)
+    ticks = int(found.demands.tick[-1]) + 1 - motion.first_tick
+    dt = motion.dt * ticks / len(found.q)
+    slow = slowings(clock, rates, found.factor, dt, len(found.q))
     return PacedPath(
         found.q,
         touching(motion.start, found.q, model.limits, dt),
         found.demands,
         0,
         motion.term,
-        slowings(clock, rates, found.factor, dt, len(found.q)),
+        told_in_ticks(slow, motion.dt * (ticks - motion.plan.ticks)),
         True,
     )
 

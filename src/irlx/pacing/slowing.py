@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 
 import numpy as np
@@ -49,6 +49,17 @@ def slowings(clock: PlannedClock, rates: Array, factor: float, dt: float, rows: 
     with np.errstate(divide="ignore", invalid="ignore"):
         share = np.where(rates > 0.0, np.sqrt(clock.x) / rates, 1.0)
     return tuple(_slowing(clock, rates, share, span, factor, dt, rows) for span in spans(share < SLOWED))
+
+
+def told_in_ticks(found: tuple[Slowing, ...], later: float) -> tuple[Slowing, ...]:
+    """Slowed stretches of a motion that ends `later` (s) than it is programmed to, both in whole ticks.
+
+    What they cost is in all just that; none where the motion takes no longer.
+    """
+    lost = sum(part.lost for part in found)
+    if not (later > 0.0 and lost > 0.0):
+        return ()
+    return tuple(replace(part, lost=part.lost * later / lost) for part in found)
 
 
 def _slowing(

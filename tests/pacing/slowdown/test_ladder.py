@@ -143,7 +143,7 @@ def test_rungs_are_tried_in_turn_until_one_is_told(least_gain, durations, tried,
     """`durations` of the rungs in the order in which they are tried, the programme taking 1 s."""
     seen: list[object] = []
 
-    def timed(model, grid, walked, bounds, acc, rung, pinned, reserve):
+    def timed(model, grid, walked, bounds, acc, rung, pinned, reserve, smooth):
         seen.append(rung)
         return TimedCurve(None, stand_still_clock(durations[len(seen) - 1]))
 

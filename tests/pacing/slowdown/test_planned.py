@@ -226,7 +226,7 @@ def first_motion(monkeypatch, answers: list[object]) -> tuple[object, list[objec
     asked: list[object] = []
     kinks: list[bool] = []
 
-    def timed_curves(*arguments):
+    def timed_curves(*arguments, **_):
         kinks.append(arguments[-1])
         return iter(known)
 
@@ -254,7 +254,7 @@ def test_the_first_curve_whose_rows_keep_all_is_the_motion(monkeypatch) -> None:
 def test_a_walk_has_kinks_and_postures_found_all_at_once_have_none(at_once: bool, monkeypatch) -> None:
     told: list[bool] = []
 
-    def timed_curves(*arguments):
+    def timed_curves(*arguments, **_):
         told.append(arguments[-1])
         return iter([])
 

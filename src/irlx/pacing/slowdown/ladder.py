@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +14,7 @@ from irlx.pacing.slowdown.curve import JointCurve
 from irlx.pacing.slowdown.grid import PathGrid
 from irlx.pacing.slowdown.model import Model
 from irlx.pacing.slowdown.relax import Smoothing, relax
+from irlx.pacing.slowdown.smooth_clock import SmoothRate
 
 Array = NDArray[np.float64]
 
@@ -38,10 +39,19 @@ _ROUNDING = 1e-12
 
 @dataclass(frozen=True)
 class TimedCurve:
-    """A curve q(s), and the fastest clock through it."""
+    """A curve q(s), and the fastest clock through it; `smooth` is that with the programme's bound on jerk,
+    `jerk_at` what this is at path parameters (M,).
+    """
 
     curve: JointCurve
     clock: PlannedClock
+    smooth: PlannedClock | None = None
+    jerk_at: Callable[[Array], Array] | None = None
+
+    @property
+    def duration(self) -> float:
+        """Time (s) of the motion."""
+        return (self.clock if self.smooth is None else self.smooth).duration
 
 
 def timed_curves(
@@ -54,6 +64,7 @@ def timed_curves(
     reserve: float = 0.0,
     least_gain: float = 0.0,
     kinked: bool = True,
+    smooth: SmoothRate | None = None,
 ) -> Iterator[TimedCurve]:
     """The rungs for the walked postures (N + 1, n), fastest first; none that leaves the position limits or
     comes too near to something. That is looked at when a rung is asked for.
@@ -61,7 +72,7 @@ def timed_curves(
     `bounds` are lower and upper positions (N + 1, n), `acc` the largest |d2s/dt2|, (N,) or one; the postures
     of the knots `pinned` stay; `reserve` (m) is kept beside margins. Rungs behind one that does not gain the
     part `least_gain` of the time come last, whatever their clock; so do all behind a walk that is not
-    `kinked`.
+    `kinked`. `smooth` is given where the programme bounds the jerk.
     """
     programmed = float(np.sum(grid.times))
     known = np.isfinite(model.limits.acceleration_upper) | np.isfinite(model.limits.acceleration_lower)
@@ -69,10 +80,10 @@ def timed_curves(
     found: list[tuple[float, TimedCurve]] = []
     for rung in _in_turn(tamed or not kinked, least_gain > 0.0):
         handicap = 1.0 + ROUGH_GAIN if rung is None and not tamed and kinked else 1.0
-        timed = _timed(model, grid, walked, bounds, acc, rung, pinned, reserve)
+        timed = _timed(model, grid, walked, bounds, acc, rung, pinned, reserve, smooth)
         if timed is None:
             continue
-        duration = timed.clock.duration
+        duration = timed.duration
         enough = duration <= programmed * (1.0 + (GOOD_ENOUGH if least_gain == 0.0 else UNTOLD))
         if enough and not _clear(model, grid, timed.curve):
             continue
@@ -118,6 +129,7 @@ def _timed(
     rung: Smoothing | None,
     pinned: Sequence[int],
     reserve: float,
+    smooth: SmoothRate | None,
 ) -> TimedCurve | None:
     """The curve of one rung with its clock; None where it leaves the position limits or gets lost."""
     try:
@@ -135,7 +147,11 @@ def _timed(
     ):
         return None
     clock = plan_clock(clock_bounds(curve, limits, grid.rates, acc))
-    return TimedCurve(curve, clock) if clock is not None else None
+    if clock is None:
+        return None
+    if smooth is None:
+        return TimedCurve(curve, clock)
+    return TimedCurve(curve, clock, smooth.clock(curve, limits), smooth.law.jerk_at)
 
 
 def inner_places(grid: PathGrid) -> Array:

@@ -26,6 +26,7 @@ from irlx.pacing.slowdown.model import Model
 from irlx.pacing.slowdown.resample import resample
 from irlx.pacing.slowdown.reserve import RESERVE, reserved
 from irlx.pacing.slowdown.short_ends import with_short_ends
+from irlx.pacing.slowdown.smooth_clock import SmoothRate
 from irlx.transform.clearance import TooNear
 from irlx.transform.criteria.criterion import Criterion
 from irlx.transform.nearest import scaled_singular_values
@@ -51,6 +52,7 @@ _RESERVES = 4
 _RESERVE_GROWTH = 4.0
 _STRETCH_MARGIN = 1e-6
 _LARGEST_STRETCH = 2.0
+_SAME_JERK, _MOST_FOR_JERK = 1e-9, 1.03
 
 
 @dataclass(frozen=True)
@@ -206,7 +208,10 @@ def _with_reserve(
         q = with_drawn_end(model, grid, q, bounds, task.criterion_of, through)
     least_gain = COARSE_GAIN if coarse else 0.0
     kinked = easy is None
-    curves = timed_curves(model, grid, q, bounds, _acc(task, grid), through, reserve, least_gain, kinked)
+    smooth = _smooth(task, grid)
+    curves = timed_curves(
+        model, grid, q, bounds, _acc(task, grid), through, reserve, least_gain, kinked, smooth=smooth
+    )
     fastest = next(curves, None)
     if fastest is None:
         return _outside(model, grid, q, task.ticking.dt)
@@ -232,8 +237,18 @@ def _with_reserve(
 
 
 def _with_short_ends(model: Model, timed: TimedCurve, task: MotionTask, grid: PathGrid) -> TimedCurve:
+    if timed.smooth is not None:
+        return replace(timed, clock=timed.smooth)
     rates, acc = (grid.rates, task.law.rates_at), _acc(task, grid)
     return replace(timed, clock=with_short_ends(timed.clock, timed.curve, model.limits, *rates, acc))
+
+
+def _smooth(task: MotionTask, grid: PathGrid) -> SmoothRate | None:
+    """How to plan clocks that keep the programme's bound on jerk, where it has one."""
+    coarse = task.ticking.resolution.is_coarse
+    # Half a tick: differences of rows tell what happens between ticks, evenly spread.
+    smooth = SmoothRate(task.law, task.acc, grid.step if coarse else min(0.5 * task.ticking.dt, grid.step))
+    return smooth if smooth.bounds_jerk else None
 
 
 def _acc(task: MotionTask, grid: PathGrid) -> Array:
@@ -314,6 +329,10 @@ def rows_on_clock(model: Model, timed: TimedCurve, ticking: Ticking, least: floa
         q = resample(model, timed.curve, demands.s, Poses(demands.position, demands.rotation))
         excess = excess_of(start, np.vstack([q, q[-1:]]), model.limits, whole / rows)
         broken = excess.first
+        rougher = 1.0 if ticking.resolution.is_coarse else _rougher(timed, demands.s, ticking.dt)
+        if broken is None and rougher > 1.0:
+            duration = whole * rougher * (1.0 + _STRETCH_MARGIN)
+            continue
         if broken is None:
             if model.clearance is not None:
                 elapsed = whole / rows * np.arange(1.0, rows + 1.0)
@@ -329,6 +348,21 @@ def rows_on_clock(model: Model, timed: TimedCurve, ticking: Ticking, least: floa
         if excess.position > 0.0 or slower > _LARGEST_STRETCH:
             break
     return found
+
+
+def _rougher(timed: TimedCurve, s: Array, dt: float) -> float:
+    """Times slower that a clock would have to run for rows at s (M,) to keep the jerk of the programme.
+
+    1 where it is not to be kept, and where knots are so far apart that differences of rows see each of them.
+    """
+    if timed.smooth is None or timed.jerk_at is None:
+        return 1.0
+    # Two rows of rest on either side, and the start: differences as a verifier would take them.
+    held = np.concatenate([np.zeros(3), s, np.full(2, s[-1])])
+    jerk = np.abs(np.diff(held, 3)) / dt**3
+    allowed = np.maximum(timed.jerk_at(held[:-3]), timed.jerk_at(held[3:]))
+    slower = float(np.cbrt(np.max(jerk / allowed)))
+    return slower if 1.0 + _SAME_JERK < slower < _MOST_FOR_JERK else 1.0
 
 
 def _clock(planned: PlannedClock, ticks: int, rows: int, dt: float, factor: float) -> Clock:
