@@ -220,3 +220,47 @@ def test_before_and_behind_the_way_all_is_as_at_its_ends(kind: str) -> None:
     outside = np.array([-0.5 * law.length, 1.5 * law.length])
     assert law.times_at(outside).tolist() == [0.0, law.duration]
     assert law.rates_at(outside).tolist() == [0.0, 0.0]
+
+
+@pytest.mark.parametrize("acc", [0.8, 8.0])
+@pytest.mark.parametrize("count", [1, 2, 36])
+def test_ramps_at_the_ends_of_a_curve_are_as_fast_as_those_of_a_line(count: int, acc: float) -> None:
+    """A section is no ramp: 60 mm/s took all of the first and last one, whatever ACC, in 28 ticks for 15."""
+    lengths, columns = np.full(count, 0.15 / count), np.ones((3, count))
+    bounds = Sections(lengths, 0.06 * columns[0], acc * columns[1], columns[2], np.ones(count, dtype=bool))
+    law, line = fastest_trapezoids(bounds, 0.15), Trapezoid.fastest(0.15, 0.06, acc)
+    assert law.duration == pytest.approx(line.duration, rel=1e-9)
+    t = np.linspace(0.0, line.duration, 1001)
+    np.testing.assert_allclose(law.evaluate(t)[1], line.evaluate(t)[1], atol=1e-9)
+
+
+@pytest.mark.parametrize("top", [0.13, 0.2, 0.29, 9.0])
+def test_a_ramp_ends_within_a_section_of_a_curve_and_not_at_its_border(top: float) -> None:
+    """Wherever in it; a way too short for the speed is a triangle, its top within a section too."""
+    lengths = np.full(35, 0.01)
+    bounds = Sections(lengths, np.full(35, top), np.ones(35), np.ones(35), np.ones(35, dtype=bool))
+    law, line = fastest_trapezoids(bounds, 0.35), Trapezoid.fastest(0.35, top, 1.0)
+    assert law.duration == pytest.approx(line.duration, rel=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_on_a_curve_bounds_hold_and_the_rate_falls_no_later_than_evenly(seed: int) -> None:
+    """By differences in time; to a narrower section the square of the rate changes evenly."""
+    rng = np.random.default_rng(seed)
+    count = 40
+    s = np.arange(count) / count
+    speed = 0.3 + 0.2 * np.sin(9.0 * s + rng.uniform(0.0, 6.0)) + 0.05 * rng.random()
+    acc = np.full(count, 10.0 ** rng.uniform(-0.5, 0.5))
+    bounds = Sections(np.full(count, 1.0 / count), speed, acc, np.ones(count), np.ones(count, dtype=bool))
+    law = fastest_trapezoids(bounds, 1.0)
+    t = np.linspace(0.0, law.duration, 100_001)
+    way, rate = law.evaluate(t)
+    section = np.clip((way * count).astype(int), 0, count - 1)
+    clear = np.abs(way * count - np.round(way * count)) > 1e-3
+    assert np.all(rate[clear] <= speed[section][clear] * (1.0 + 1e-9))
+    assert np.max(np.abs(np.diff(rate))) / (t[1] - t[0]) <= acc[0] * (1.0 + 1e-6)
+    ends = law.rates_at(np.arange(count + 1.0) / count) ** 2
+    half = law.rates_at((np.arange(count) + 0.5) / count) ** 2
+    inner = half[1:-1] - 0.5 * (ends[1:-2] + ends[2:-1])
+    # Along the slopes of the wave, away from rest and from where a ramp ends, nothing waits for a border.
+    assert np.count_nonzero(np.abs(inner) < 1e-9) >= count - 12

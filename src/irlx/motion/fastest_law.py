@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from math import sqrt
+from math import inf, sqrt
 
 from irlx.motion.phased_law import PhasedLaw
 from irlx.motion.phases import Phases
 from irlx.motion.s_curve import add_s_curve, reach
 from irlx.motion.sections import Sections
+
+_ON_CAP = 1.0 - 1e-12
+"""Share of what bounds a border's rate above which nothing but that bounds it."""
 
 
 def fastest_trapezoids(sections: Sections, length: float) -> PhasedLaw:
@@ -17,7 +20,8 @@ def fastest_trapezoids(sections: Sections, length: float) -> PhasedLaw:
     The squares of the rates where sections meet are cut to what can be reached from the start, then to what
     can be braked down to the end; within a section the rate rises, cruises and falls. Where the bounds of
     sections stand for ones that change steadily, it only goes from one border to the other: a rate that fell
-    at each border as late as it may would make the acceleration flicker.
+    at each border as late as it may would make the acceleration flicker. A ramp that comes into such a
+    section from one border is led on to its end there, then the rate stays what it is at the other border.
     """
     lengths, speed, acc = sections.lengths.tolist(), sections.speed.tolist(), sections.acc.tolist()
     square = [0.0, *(min(a, b) ** 2 for a, b in pairwise(speed)), 0.0]
@@ -25,17 +29,25 @@ def fastest_trapezoids(sections: Sections, length: float) -> PhasedLaw:
         square[i + 1] = min(square[i + 1], square[i] + 2.0 * bound * way)
     for i in range(len(lengths) - 1, -1, -1):
         square[i] = min(square[i], square[i + 1] + 2.0 * acc[i] * lengths[i])
+    # Which borders lie on a ramp: below what the sections beside them allow.
+    caps = [inf, *(min(a, b) ** 2 for a, b in pairwise(speed)), inf]
+    ramps = [rate < _ON_CAP * cap for rate, cap in zip(square, caps, strict=True)]
     phases = Phases()
     steadily = sections.steadily
     for i, (way, fastest, bound) in enumerate(zip(lengths, speed, acc, strict=True)):
         first, last = square[i], square[i + 1]
         if way == 0.0:
             continue
-        if steadily[i] and max(first, last) > 0.0:
+        slower = i if first <= last else i + 1
+        all_ramp = abs(last - first) >= _ON_CAP * 2.0 * bound * way
+        if steadily[i] and max(first, last) > 0.0 and (all_ramp or not ramps[slower]):
             rates = (sqrt(first), sqrt(last))
             phases.add(2.0 * way / (rates[0] + rates[1]), way, rates[1], bound, (last - first) / (2.0 * way))
             continue
-        top = max(min(fastest * fastest, 0.5 * (first + last) + bound * way), first, last)
+        top = min(fastest * fastest, 0.5 * (first + last) + bound * way)
+        if steadily[i] and not ramps[2 * i + 1 - slower]:
+            top = min(top, max(first, last))
+        top = max(top, first, last)
         up, down = min((top - first) / (2.0 * bound), way), min((top - last) / (2.0 * bound), way)
         peak, rates = sqrt(top), (sqrt(first), sqrt(last))
         flat = max(way - up - down, 0.0)

@@ -33,7 +33,7 @@ class Phases:
     ) -> None:
         """A phase of `span` s over `way` that ends at `rate`; nothing where it takes no time.
 
-        It begins with the acceleration `start` and keeps `jerk`; `allowed` and `allowed_jerk` bound its place.
+        It begins with the acceleration `start` and keeps `jerk`; `allowed` and `allowed_jerk` bound it.
         """
         if not (span > 0.0 and way > 0.0):
             return
