@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -86,9 +87,13 @@ def test_the_cell_that_is_found_tells_the_number_of_joints(tmp_path, name):
     assert ["7 values, found 3" in one for one in found] == [True]
 
 
-def test_a_found_cell_at_fault_is_left_to_the_run(tmp_path):
+def test_of_a_found_cell_a_check_tells_that_it_is_no_toml_the_run_all_else(tmp_path):
     path = program(tmp_path, JOINTS, "MOVE PTP m;")
-    (tmp_path / "p.toml").write_text("[robot\n", encoding="utf-8")
+    cell = tmp_path / "p.toml"
+    cell.write_text("[robot\n", encoding="utf-8")
+    (found,) = irlx.check(path)
+    assert (found.code, Path(found.place.file)) == ("IRL601", cell)
+    cell.write_text('[robot]\nmodle = "arm7"\n', encoding="utf-8")
     assert irlx.check(path) == []
 
 
