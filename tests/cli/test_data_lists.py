@@ -1,8 +1,6 @@
 """Data lists as files beside a program: run, check, verify, and every way to go wrong with them."""
 
 import hashlib
-import subprocess
-import sys
 
 import pytest
 
@@ -91,25 +89,6 @@ def test_verify_tells_an_edited_list(inside, listed):
     assert done.returncode == 1
     assert "target.position.1 is 11.4 in the stream, 11.401 from the program" in done.stdout
     assert inside("verify", "p.irdata").returncode == 0
-
-
-MODULES = """
-import sys
-from irlx.cli.main import main
-code = main(sys.argv[1:])
-heavy = {"numpy", "scipy", "pinocchio", "proxsuite", "pydantic", "rich"} & set(sys.modules)
-print(code, sorted(heavy), file=sys.stderr)
-"""
-
-
-@pytest.mark.req("QA-11")
-@pytest.mark.parametrize("file", ["p.irl", "points.dat"])
-def test_a_check_loads_nothing_numeric(listed, environment, file):
-    call = [sys.executable, "-c", MODULES, "check", file]
-    done = subprocess.run(
-        call, cwd=listed, env=environment, capture_output=True, text=True, check=True, timeout=60
-    )
-    assert (done.stdout, done.stderr) == (f"{file}: 0 errors, 0 warnings\n", "0 []\n")
 
 
 def lists_folder(listed):

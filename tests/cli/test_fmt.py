@@ -1,8 +1,8 @@
 """`irlx fmt`: files in place, checks, differences, standard input, and what must never happen to a file."""
 
+import io
 import os
 import stat
-import subprocess
 import sys
 
 import pytest
@@ -47,12 +47,16 @@ def test_check_and_diff_write_nothing(inside, ugly):
 
 
 @pytest.mark.req("LANG-74")
-def test_standard_input(command):
+def test_standard_input(command, inside, monkeypatch):
+    def told(given, *arguments):
+        monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(given)))
+        return inside("fmt", *arguments)
+
     done = command("fmt", "-", input=UGLY.encode())
     assert (done.returncode, done.stdout, done.stderr) == (0, PRETTY, "")
-    done = command("fmt", "--check", "-", input=UGLY.encode())
+    done = told(UGLY.encode(), "--check", "-")
     assert (done.returncode, done.stdout) == (1, "<stdin>: would be formatted\n")
-    done = command("fmt", "-", input=b"PROGRAM p; BEGIN x := ; ENDPROGRAM")
+    done = told(b"PROGRAM p; BEGIN x := ; ENDPROGRAM", "-")
     assert (done.returncode, done.stdout) == (1, "")
     assert done.stderr.startswith("<stdin>:1:23: error IRL101: ")
 
@@ -120,25 +124,3 @@ def test_the_dialect_is_mended(inside, folder):
     assert (folder / "d.irl").read_text() == mended
     assert "IRL10" not in inside("check", "d.irl").stderr
     assert "IRL205" not in inside("check", "d.irl").stderr
-
-
-LIGHT = """
-import sys
-from irlx.cli.main import main
-code = main(sys.argv[1:])
-heavy = {"numpy", "scipy", "pinocchio", "proxsuite", "pydantic", "rich"} & set(sys.modules)
-print(code, sorted(heavy), file=sys.stderr)
-"""
-
-
-@pytest.mark.req("QA-11")
-@pytest.mark.parametrize(
-    "arguments",
-    [["fmt", "u.irl"], ["explain", "IRL203"], ["explain"], ["check", "u.irl", "--format", "sarif"]],
-)
-def test_nothing_numeric_is_loaded(ugly, folder, environment, arguments):
-    call = [sys.executable, "-c", LIGHT, *arguments]
-    done = subprocess.run(
-        call, cwd=folder, env=environment, capture_output=True, text=True, check=True, timeout=60
-    )
-    assert done.stderr.endswith(" []\n")

@@ -1,8 +1,6 @@
 """`irlx robots`: the table, one robot, the check of a URDF."""
 
 import json
-import subprocess
-import sys
 from importlib.resources import files
 
 import pytest
@@ -59,17 +57,6 @@ def test_an_old_data_package_lacks_some(inside, monkeypatch, tmp_path):
     monkeypatch.setattr(overview, "robot_data_folder", lambda: tmp_path)
     assert inside("robots").returncode == 0
     assert not any(one.installed for one in robot_overviews() if not one.packaged)
-
-
-def test_the_table_loads_no_numeric_library(environment):
-    code = (
-        "import sys; from irlx.cli.main import main; main(['robots']);"
-        "print(sorted({'numpy', 'pinocchio', 'pydantic', 'scipy'} & set(sys.modules)))"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, timeout=60, check=True
-    )
-    assert done.stdout.splitlines()[-1] == "[]"
 
 
 def test_one_robot(inside):
