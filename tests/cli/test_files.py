@@ -3,7 +3,6 @@
 import io
 import json
 import os
-import signal
 import subprocess
 import sys
 import time
@@ -13,6 +12,7 @@ import pytest
 
 import irlx
 from irlx.cli.main import main
+from irlx.cli.standard_channels import _Descriptor
 
 CELL = '[robot]\nmodel = "arm7"\n[motion]\ntick_ms = 20\n'
 LOGGING = """PROGRAM p;
@@ -118,7 +118,7 @@ def test_a_stream_that_is_left_leaves_the_file(place, folder):
 
 @pytest.mark.req("LANG-42")
 @pytest.mark.parametrize(
-    "end", ["MOVE LIN POSITION(800, 260, 325);", "i := 1 DIV i;", "HALT;", "READ(i);", ""]
+    "end", ["MOVE PTP MAIN_JOINT(400, 0, 0, 0, 0, 0, 0);", "i := 1 DIV i;", "HALT;", "READ(i);", ""]
 )
 def test_what_was_written_is_there_however_it_ends(place, inside, folder, end):
     place(program(f"i := 0; OPEN(f, 'log.txt', 'WRITE'); WRITE('so ', 'far'); WRITELN(f, 'kept');\n{end}"))
@@ -165,6 +165,7 @@ def test_a_dialogue(place, folder, environment):
     """Prompt and answer in turns: what is written is out before the program waits, and a line is enough.
 
     Behind the last answer there is no end of a line, and stdout cannot hold what is written then.
+    A signal while it waits: test_channels.py.
     """
     asking = "REPEAT WRITE('? '); READ(i); WRITELN(i + 1); UNTIL i = 0;"
     place(program(f"{asking} READ(i); WRITELN('żółć', i); WRITELN(EOF());"))
@@ -183,22 +184,6 @@ def test_a_dialogue(place, folder, environment):
         assert process.wait(30) == 0
 
 
-def test_an_interrupted_wait_for_input(place, folder, environment):
-    place(program("OPEN(f, 'log.txt', 'WRITE'); WRITE(f, 'kept'); WRITE('żółć'); READ(i);"))
-    call = [sys.executable, "-m", "irlx", "run", "p.irl", "--quiet"]
-    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
-    env = {**environment, "LC_ALL": "C.UTF-8"}
-    with subprocess.Popen(call, cwd=folder, env=env, **pipes) as process:
-        assert process.stdout.read(8) == "żółć".encode()
-        time.sleep(0.2)
-        process.send_signal(signal.SIGINT)
-        _, errors = process.communicate(timeout=30)
-    assert process.returncode == 130
-    assert b"interrupted" in errors
-    assert b"Traceback" not in errors
-    assert (folder / "log.txt").read_text() == "kept"
-
-
 def test_a_reader_that_goes_away(place, folder, environment):
     """The run comes to its end all the same, and its stream is written; no pipe holds all of its lines."""
     place(program("FOR i := 1 TO 8000 DO WRITELN('line ', i); ENDFOR; MOVE LIN near;"))
@@ -214,15 +199,22 @@ def test_a_reader_that_goes_away(place, folder, environment):
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
-def test_a_stdout_that_is_full(place, folder, environment):
+def test_a_stdout_that_is_full(place, inside, monkeypatch):
+    """As the stdout of a process is one: what it is made of then, test_channels.py looks at."""
     place(program("WRITELN('line');"))
-    with open("/dev/full", "w") as full:
-        done = subprocess.run(
-            [sys.executable, "-m", "irlx", "run", "p.irl", "--quiet"],
-            cwd=folder, env=environment, stdout=full, stderr=subprocess.PIPE, timeout=60, check=False,
-        )  # fmt: skip
-    assert b"p.irl:3:1: error IRL548: STANDARD_OUT cannot be written: no space left on device" in done.stderr
-    assert done.returncode == 1
+    kept, full = os.dup(1), os.open("/dev/full", os.O_WRONLY)
+    try:
+        os.dup2(full, 1)
+        with io.TextIOWrapper(io.BufferedWriter(_Descriptor(1))) as stdout:
+            monkeypatch.setattr(sys, "stdout", stdout)
+            done = inside("run", "p.irl", "--quiet")
+            monkeypatch.undo()
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)
+        os.close(full)
+    told = "p.irl:3:1: error IRL548: STANDARD_OUT cannot be written: no space left on device"
+    assert (done.returncode, done.stderr.splitlines()[0]) == (1, told)
 
 
 @pytest.mark.req("LANG-42")

@@ -38,28 +38,34 @@ STOPPING = {
 @pytest.fixture
 def ran(tmp_path: Path):
     """A run of two moves with statements between, verified."""
+    return lambda between, **given: moved(tmp_path, between, **given)
 
-    def run(between: str, **given) -> irlx.Run:
-        (tmp_path / "p.toml").write_text(CELL, encoding="utf-8")
-        text = f"PROGRAM p; {DECLARATIONS}\nBEGIN\nMOVE LIN store;\n{between}\nMOVE LIN next;\nENDPROGRAM"
-        (tmp_path / "p.irl").write_text(text, encoding="utf-8")
-        found = irlx.run(tmp_path / "p.irl", **given)
-        assert irlx.verify(found, tmp_path / "p.irl").passed
-        return found
 
-    return run
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory) -> irlx.Run:
+    """The two moves with nothing between."""
+    return moved(tmp_path_factory.mktemp("plain"), "")
+
+
+def moved(folder: Path, between: str, **given) -> irlx.Run:
+    (folder / "p.toml").write_text(CELL, encoding="utf-8")
+    text = f"PROGRAM p; {DECLARATIONS}\nBEGIN\nMOVE LIN store;\n{between}\nMOVE LIN next;\nENDPROGRAM"
+    (folder / "p.irl").write_text(text, encoding="utf-8")
+    found = irlx.run(folder / "p.irl", **given)
+    assert irlx.verify(found, folder / "p.irl").passed
+    return found
 
 
 @pytest.mark.parametrize("between", TRANSPARENT)
-def test_what_is_transparent_leaves_no_trace(ran, between):
-    plain, run = ran(""), ran(between)
+def test_what_is_transparent_leaves_no_trace(ran, plain, between):
+    run = ran(between)
     np.testing.assert_array_equal(run.q, plain.q)
     assert [type(record.block).__name__ for record in run.stream.records] == ["MoveBlock", "MoveBlock"]
 
 
 @pytest.mark.parametrize("between", STOPPING)
-def test_all_else_happens_at_rest_on_the_target(ran, between):
-    plain, run = ran(""), ran(between)
+def test_all_else_happens_at_rest_on_the_target(ran, plain, between):
+    run = ran(between)
     first, *others, last = run.stream.records
     end = int(np.flatnonzero(run.block == first.block.id)[-1])
     assert {record.tick for record in others} <= {end}

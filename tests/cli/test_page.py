@@ -151,7 +151,7 @@ def test_of_a_run_that_ends_in_an_error_a_partial_page_appears(inside, folder, n
 
 
 def test_of_a_run_in_which_nothing_moved_no_page_appears(inside, folder, names):
-    text = "PROGRAM p;\nBEGIN\n  MOVE LIN POSITION(900, 700, 0);\nENDPROGRAM;\n"
+    text = "PROGRAM p;\nBEGIN\n  MOVE LIN POSITION(900, 700 / (R_ACC - R_ACC), 0);\nENDPROGRAM;\n"
     (folder / "p.irl").write_text(text, encoding="utf-8")
     assert inside("run", "p.irl", "--html", "p.html").returncode == 1
     assert names(folder) == FILES

@@ -247,9 +247,10 @@ def test_without_matplotlib(inside, streams, monkeypatch, names):
 
 
 def test_the_terminal_loads_no_matplotlib(environment, streams):
+    """Nor is anything of notebooks loaded, there and for runs."""
     code = (
-        "import sys; from irlx.cli.main import main; main(['plot', 'a.irdata']); "
-        "print([name for name in ('matplotlib', 'PIL') if name in sys.modules])"
+        "import sys, irlx; assert irlx.run; from irlx.cli.main import main; main(['plot', 'a.irdata']); "
+        "print([name for name in ('matplotlib', 'PIL', 'IPython') if name in sys.modules])"
     )
     done = subprocess.run(
         [sys.executable, "-c", code], cwd=streams, env=environment, capture_output=True, check=True

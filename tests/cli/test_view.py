@@ -64,7 +64,7 @@ def test_no_such_file(inside, tmp_path):
 def test_a_program_that_ends_in_an_error_is_shown_as_far_as_it_came(inside, program, monkeypatch):
     seen = []
     monkeypatch.setattr("irlx.viewer.viewer.Viewer.wait", lambda self: seen.append(self.shown))
-    program.write_text(PROGRAM.replace("END", "  MOVE_INC LIN (0, 0, -2000);\nEND", 1))
+    program.write_text(PROGRAM.replace("END", "  MOVE_INC LIN (0, 0, -20 / (R_ACC - R_ACC));\nEND", 1))
     done = inside("view", str(program), "--port", "0", "--no-open")
     assert done.returncode == 1
     assert "error IRL5" in done.stderr

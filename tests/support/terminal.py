@@ -64,7 +64,8 @@ def seen_inside(
     with TemporaryFile() as out, mock.patch.dict(os.environ, _environment(env), clear=True):
         os.chdir(folder)
         try:
-            with _channels(slave, out.fileno() if piped else slave, slave):
+            encoding = os.environ.get("PYTHONIOENCODING", "utf-8")
+            with _channels(encoding, slave, out.fileno() if piped else slave, slave):
                 os.close(slave)
                 reader.start()
                 code = main([str(argument) for argument in arguments])
@@ -91,7 +92,7 @@ def _environment(env: Mapping[str, str] | None) -> dict[str, str]:
 
 
 @contextmanager
-def _channels(*descriptors: int) -> Iterator[None]:
+def _channels(encoding: str, *descriptors: int) -> Iterator[None]:
     """Stdin, stdout and stderr lead there, for Python and for what asks the system."""
     with ExitStack() as stack:
         for number, (name, mode) in enumerate((("stdin", "r"), ("stdout", "w"), ("stderr", "w"))):
@@ -99,7 +100,7 @@ def _channels(*descriptors: int) -> Iterator[None]:
             stack.callback(os.close, kept)
             stack.callback(os.dup2, kept, number)
             os.dup2(descriptors[number], number)
-            stream = stack.enter_context(open(number, mode, encoding="utf-8", closefd=False))
+            stream = stack.enter_context(open(number, mode, encoding=encoding, closefd=False))
             stack.enter_context(mock.patch.object(sys, name, stream))
         yield
 
