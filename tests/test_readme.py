@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from irlx.cli.main import main
+from irlx.cli.main import build_parser, main
 
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -25,8 +25,14 @@ def clone(tmp_path):
     return tmp_path
 
 
-LONG = ("irlx run programs/koch/square_slow.irl",)
-"""Commands that take most of the time of all: tests of slowed runs look at what such a one prints."""
+LONG = (
+    "irlx run programs/koch/square_slow.irl",
+    "irlx run square.irdata --cell programs/koch/square.toml",
+)
+"""Commands, the first ones of their sessions, that take most of the time of all: tests of slowed runs,
+`cli/test_replay.py` and `cli/test_reproduce.py` look at what such ones print, of shorter programs."""
+DEMO = "irlx demo"
+"""What it prints, `cli/test_demo.py` compares."""
 
 
 def sessions() -> list[tuple[list[str], list[str]]]:
@@ -58,19 +64,32 @@ def carry_out(session: tuple[list[str], list[str]], capsys) -> None:
 @pytest.mark.req("QA-10")
 def test_the_console_sessions_run_and_print_what_they_show(clone, monkeypatch, capsys):
     monkeypatch.chdir(clone)
-    short = [session for session in sessions() if session[0] and not {*session[0]} & {*LONG}]
-    assert len(short) == len(fenced("console")) - len(LONG)
+    short = [session for session in sessions() if session[0][0] not in (*LONG, DEMO)]
+    assert len(short) == len(fenced("console")) - len(LONG) - 1
     for session in short:
         carry_out(session, capsys)
+
+
+@pytest.mark.req("QA-10")
+def test_the_long_sessions_are_command_lines_of_files_that_are_there(clone, monkeypatch):
+    monkeypatch.chdir(clone)
+    made = {word for commands, _ in sessions() for line in commands for word in re.findall(r"-o (\S+)", line)}
+    for commands, _ in sessions():
+        for line in commands if commands[0] in LONG else ():
+            words = shlex.split(line)[1:]
+            build_parser().parse_args(words)
+            files = [word for word in words if "." in word]
+            assert files
+            assert [name for name in files if name not in made and not Path(name).is_file()] == []
 
 
 @pytest.mark.slow
 @pytest.mark.req("QA-10")
 def test_the_long_sessions_run_and_print_what_they_show(clone, monkeypatch, capsys):
+    """In their order, with those before them: some read what others wrote."""
     monkeypatch.chdir(clone)
     for session in sessions():
-        if {*session[0]} & {*LONG}:
-            carry_out(session, capsys)
+        carry_out(session, capsys)
 
 
 @pytest.mark.req("QA-10")

@@ -81,7 +81,7 @@ def test_conditions_hold_while_the_posture_returns(tmp_path: Path) -> None:
 
 
 def test_conditions_hold_where_the_tool_is_slowed(tmp_path: Path) -> None:
-    run = ran(tmp_path, SQUARE, speed=12)
+    run = ran(tmp_path, "  MOVE LIN (10500, 1000, 3500);", speed=5)
     assert run.summary.slowed
     assert_kept(run, tmp_path)
 

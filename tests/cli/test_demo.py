@@ -69,7 +69,10 @@ def test_it_runs_and_says_what_it_shows(told: Told, place: Path) -> None:
     assert all(len(line) <= 80 for line in told.lines if place.name not in line)
 
 
-def test_the_reference_shows_it(told: Told) -> None:
+def test_the_reference_and_the_readme_show_it(told: Told) -> None:
+    readme = (PAGE.parents[2] / "README.md").read_text(encoding="utf-8")
+    first = readme.split("```console\n$ irlx demo\n")[1].split("```")[0].splitlines()
+    assert first == [line for line in told.lines if line in first]
     page = (PAGE.parents[1] / "reference" / "interface.md").read_text(encoding="utf-8")
     shown = page.split("$ irlx demo\n")[1].split("```")[0].splitlines()
     # Figures at rounding level differ between machines.

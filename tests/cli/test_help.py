@@ -13,8 +13,13 @@ from irlx.cli.main import build_parser, main
 ROOT = Path(__file__).parents[2]
 SERVING = {"view"}
 """Commands that go on until somebody stops them: their examples are only parsed here."""
-ELSEWHERE = {"irlx demo", "irlx demo try_it --open"}
-"""Examples only parsed here: `test_demo.py` carries out the one, and another folder with `--open`."""
+ELSEWHERE = {
+    "irlx demo",
+    "irlx demo try_it --open",
+    "irlx run programs/koch/square_cyclic.irl --html square.html",
+}
+"""Examples only parsed here: `test_demo.py` carries out the one, and another folder with `--open`; of the
+README the last one's program, with other files, as are the pages of others in `test_page.py`."""
 SEEN_BY_EXAMPLES = ("programs", "tests/conformance", "src/irlx/cell/robots")
 """Folders of the repository that examples name."""
 MADE_BY_RUNS = shutil.ignore_patterns("*.irdata", "*.npz", "*.csv.*", "readings.txt", "__pycache__")
@@ -50,7 +55,8 @@ def made_before(words):
     for word in words[1:]:
         path = Path(word)
         if path.suffix == ".irdata" and not path.exists() and path.with_suffix(".irl").exists():
-            assert main(["run", str(path.with_suffix(".irl")), "--quiet"]) == 0
+            program = str(path.with_suffix(".irl"))
+            assert main(["run", program, "--tick", "200", "--no-verify", "--quiet"]) == 0
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -67,7 +73,8 @@ def test_examples_work(clone, monkeypatch, capsys, line):
     monkeypatch.chdir(clone)
     words = shlex.split(line)[1:]
     if words[0] in SERVING or line in ELSEWHERE:
-        COMMANDS[""].parse_args(words)
+        given = COMMANDS[""].parse_args(words)
+        assert all(Path(path).is_file() for path in getattr(given, "programs", []) if line in ELSEWHERE)
         return
     made_before(words)
     capsys.readouterr()

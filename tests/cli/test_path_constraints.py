@@ -139,7 +139,7 @@ def test_a_turn_that_is_frozen_keeps_a_heading_platform_from_driving(tmp_path: P
 def test_a_slow_platform_slows_the_tool_and_not_the_other_way(tmp_path: Path) -> None:
     """The path is sacred: where the platform cannot follow, both take their time."""
     slow = "(-20, -20, -2, -20, -20, -20, -20, -20, -20), (20, 20, 2, 20, 20, 20, 20, 20, 20)"
-    run = ran(tmp_path, f"  JOINTSPEEDLIMIT {slow};\n  MOVE_INC LIN POSITION(150, 0, 0);")
+    run = ran(tmp_path, f"  JOINTSPEEDLIMIT {slow};\n  MOVE_INC LIN POSITION(80, 0, 0);")
     assert run.summary.slowed
     assert off_path(run.q)[0] <= 1e-7
     assert np.abs(run.qd[:, :2]).max() <= 0.02 * (1.0 + 1e-9)

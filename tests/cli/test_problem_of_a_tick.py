@@ -81,10 +81,15 @@ def test_it_is_printed_and_in_the_json(tmp_path: Path, capsys: pytest.CaptureFix
     assert [f"{value:.4g}" for value in told["jacobian"][0]] == table["x"][:11]
 
 
-def test_motions_of_the_joints_have_none() -> None:
-    program, tick_ms = PROGRAM.with_name("reconfiguration.irl"), 100
-    run = irlx.run(program, tick_ms=tick_ms, explain_tick=5)
+def test_motions_of_the_joints_have_none(tmp_path: Path) -> None:
+    (tmp_path / "p.toml").write_text('[robot]\nmodel = "arm7"\n[motion]\ntick_ms = 20\n', encoding="utf-8")
+    text = "PROGRAM p;\nVAR JOINT: start;\nBEGIN\n  start := R_JOINT_ACT;\n"
+    text += "  FREEZESTART 3;\n  MOVE_INC LIN (30, -60, 0);\n  FREEZEEND;\n"
+    text += "  MOVE_INC LIN (-30, 60, 0);\n  RECONFIGURATION start;\nENDPROGRAM\n"
+    program = written(tmp_path, text)
+    run = irlx.run(program, explain_tick=5)
     assert run.explanation.problem is not None
     last = next(r for r in run.stream.records if r.block.__class__.__name__ == "ReconfigureBlock")
-    run = irlx.run(program, tick_ms=tick_ms, explain_tick=last.tick + 3)
+    run = irlx.run(program, explain_tick=last.tick + 3)
+    assert run.explanation.motion == "RECONFIGURATION"
     assert run.explanation.problem is None

@@ -93,7 +93,8 @@ def test_a_stream_codes_faults_of_irlx(files, monkeypatch):
 
 def test_a_tick_is_explained_in_a_run_that_fails_later(files, monkeypatch, capsys):
     pose = irlx.run(files("HALT;", ARM7)).tool[0, :3] * 1e3
-    body = f"MOVE LIN POSITION({pose[0]}, {pose[1] + 30}, {pose[2]});\nMOVE LIN POSITION(800, 260, 325);"
+    beyond = "MOVE PTP MAIN_JOINT(400, 0, 0, 0, 0, 0, 0);"
+    body = f"MOVE LIN POSITION({pose[0]}, {pose[1] + 30}, {pose[2]});\n{beyond}"
     program = files(body, ARM7)
     monkeypatch.chdir(program.parent)
     assert main(["run", "p.irl", "-o", "out.npz", "--explain-tick", "5"]) == 1

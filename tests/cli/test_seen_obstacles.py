@@ -244,7 +244,7 @@ def test_the_same_ball_gives_the_same_bits(tmp_path):
 
 
 def test_ball_and_noise_together(tmp_path):
-    path = files(tmp_path, tick=20)
+    path = files(tmp_path, LINE.replace("2 SEC", "0.2 SEC"), tick=20)
     rng = np.random.default_rng(5)
 
     def noise(_):
