@@ -175,7 +175,7 @@ def test_a_line_that_fails_all_the_time_is_given_up(tmp_path, monkeypatch) -> No
     monkeypatch.setattr("irlx.dry_run.MOST_FAILURES", 3)
     monkeypatch.setattr("irlx.dry_run.MOST_TARGETS", 1)
     (tmp_path / "t.toml").write_text('[robot]\nmodel = "arm7"\n')
-    (tmp_path / "t.irl").write_text(PLACES.format(move="PTP", first=800, last=5))
+    (tmp_path / "t.irl").write_text(PLACES.format(move="PTP", first=800, last=3))
     (one,) = [one for one in irlx.check(tmp_path / "t.irl", motion=True) if one.is_error]
     assert one.message.endswith("; so it is 2 more times at least, for (900, 200, 324) mm and 1 other")
 

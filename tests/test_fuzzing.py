@@ -27,7 +27,7 @@ JUDGES = {"language": LanguageJudge, "readers": ReadersJudge}
 KEPT = sorted(path for path in CORPUS.rglob("*") if path.is_file() and path.parts[-3] in JUDGES)
 QUICK = 10**6
 """Number of the portions of the quick part: far from those of a campaign, which begin with sound files."""
-PROGRAMS, FILES, STREAMS = 800, 180, 50
+PROGRAMS, FILES, STREAMS = 600, 120, 30
 
 
 @pytest.fixture(scope="module")

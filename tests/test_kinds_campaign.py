@@ -87,7 +87,7 @@ def judged(seed: int, folder: Path) -> tuple[str, int]:
     return end, len(run.q)
 
 
-@pytest.mark.parametrize("seed", first(3, QUICK))
+@pytest.mark.parametrize("seed", first(2, QUICK))
 def test_robots_of_every_kind(tmp_path: Path, seed: int) -> None:
     end, rows = judged(seed, tmp_path)
     print(f"seed {seed}: {end}, {rows} rows")

@@ -33,7 +33,7 @@ from long_run import first
 
 pytestmark = [pytest.mark.req("TRF-13"), pytest.mark.req("TRF-14")]
 
-QUICK = (0, 1, 4, 7, 8, 10, 13, 15, 17, 18, 19, 32, 33, 37, 40, 152, 153, 155, 156, 157, 166, 179)
+QUICK = (0, 1, 4, 7, 10, 13, 15, 17, 18, 19, 32, 33, 37, 40, 152, 153, 157, 166, 179)
 """Seeds of scenes of all kinds that take little time."""
 
 SWINGING = (1409, 1197)

@@ -70,12 +70,13 @@ def test_a_fault_of_the_campaign_is_a_finding_that_names_it(monkeypatch: pytest.
     assert "Traceback" in tally.findings[0].verdict.finding
 
 
+@pytest.mark.parametrize("full", [False, pytest.param(True, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("folder", [_case(folder) for folder in CORPUS])
-def test_what_was_found_once_stays_mended(tmp_path: Path, folder: Path) -> None:
+def test_what_was_found_once_stays_mended(tmp_path: Path, folder: Path, full: bool) -> None:
     """What must hold is in its note: the program runs to its end, and everything about it is true."""
     for file in folder.iterdir():
         shutil.copy(file, tmp_path)
-    verdict = judged(tmp_path, 0)
+    verdict = judged(tmp_path, 0, full)
     assert not verdict.finding, verdict.finding
     assert not verdict.code, verdict.message
     assert (folder / "note.txt").read_text(encoding="utf-8").strip()

@@ -38,7 +38,7 @@ from long_run import first
 
 pytestmark = [pytest.mark.req("TRF-05"), pytest.mark.req("TRF-15"), pytest.mark.req("LANG-65")]
 
-QUICK, LONG = 10, 110
+QUICK, LONG = 7, 110
 SPARED = {"arm7": [pytest.mark.slow], "panda": []}
 """The other robot stands for this one, of which others look at frozen elbows."""
 KINDS = ["near", "far", "branch", "outside", "equal", "one joint", "along"]

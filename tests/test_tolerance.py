@@ -347,7 +347,7 @@ def test_the_programs_run_without_a_word_and_verify(name: str) -> None:
     assert irlx.verify(found, program=program, cell=cell).passed
 
 
-@pytest.mark.parametrize("seed", [32, pytest.param(range(1, 60), marks=pytest.mark.slow)])
+@pytest.mark.parametrize("seed", [15, pytest.param(range(1, 60), marks=pytest.mark.slow)])
 def test_drawn_programs_verify(seed, tmp_path) -> None:
     for number in [seed] if isinstance(seed, int) else seed:
         print("seed", number)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from functools import cache
+from collections.abc import Callable
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -153,8 +154,13 @@ pipe = { link = "left_hand", xyz = [0, 80, 0], rpy = [-90, 0, 0] }
 LINE = "PROGRAM p; BEGIN MOVE_INC LIN POSITION(40, 0, 40), POSITION(-40, 0, -40) IN FRAME pipe; ENDPROGRAM\n"
 
 
-def shared(folder: Path, left: float, right: float) -> irlx.Run:
-    """A run in which the joints of one arm weigh more than those of the other."""
+@pytest.fixture(scope="module")
+def shared(tmp_path_factory: pytest.TempPathFactory) -> Callable[[float, float], irlx.Run]:
+    """Runs in which the joints of one arm weigh more than those of the other."""
+    return cache(partial(weighed, tmp_path_factory.mktemp("shared")))
+
+
+def weighed(folder: Path, left: float, right: float) -> irlx.Run:
     weights = ", ".join(map(str, [left] * 7 + [right] * 7))
     (folder / "p.toml").write_text(SHARED % weights, encoding="utf-8")
     (folder / "p.irl").write_text(LINE, encoding="utf-8")
@@ -179,20 +185,16 @@ def jacobian(q: np.ndarray) -> np.ndarray:
     return np.column_stack(columns)
 
 
-def test_weights_share_the_motion_between_the_arms(tmp_path: Path) -> None:
-    alike, lazy_left, lazy_right = (
-        left_share(shared(tmp_path, *pair)) for pair in ((1, 1), (10, 1), (1, 10))
-    )
+def test_weights_share_the_motion_between_the_arms(shared) -> None:
+    alike, lazy_left, lazy_right = (left_share(shared(*pair)) for pair in ((1, 1), (10, 1), (1, 10)))
     assert 0.4 < alike < 0.6
     assert lazy_left < 0.35
     assert lazy_right > 0.75
 
 
 @pytest.mark.parametrize(("left", "right"), [(1, 1), (10, 1), (1, 10)])
-def test_each_step_is_the_least_of_all_that_lead_along_the_line(
-    tmp_path: Path, left: float, right: float
-) -> None:
-    q = shared(tmp_path, left, right).q
+def test_each_step_is_the_least_of_all_that_lead_along_the_line(shared, left: float, right: float) -> None:
+    q = shared(left, right).q
     inverse = np.repeat([1 / left, 1 / right], 7)
     for row in (20, 45):
         before, after = q[row - 1], q[row + 1]

@@ -10,7 +10,10 @@ import pytest
 from long_run import portions
 from second_laws import judged
 
-QUICK = range(36)
+SLOW = 11
+"""A line whose slowing takes longer than all the others together."""
+
+QUICK = [seed for seed in range(36) if seed != SLOW]
 
 pytestmark = [pytest.mark.req("MOT-03"), pytest.mark.req("MOT-20")]
 
@@ -28,10 +31,10 @@ def ends(seeds):
 def test_laws_are_those_of_others():
     found = ends(QUICK)
     assert found["refused"] < 0.1 * len(QUICK), found
-    assert found["slowed"] == 3, found
+    assert found["slowed"] == 2, found
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seeds", portions(range(36, 4036), 500))
+@pytest.mark.parametrize("seeds", [[SLOW], *portions(range(36, 4036), 500)])
 def test_many_laws_are_those_of_others(seeds):
     ends(seeds)

@@ -140,10 +140,11 @@ def test_what_turns_back_stops_with_a_note(kit, shop) -> None:
     assert [related.place for related in note.related] == [shop.pacer.locate(done[1].block.origin)]
 
 
-def test_joined_moves_that_cannot_be_done_are_done_one_by_one(kit, shop) -> None:
+def test_joined_moves_that_cannot_be_done_are_done_one_by_one(kit) -> None:
     """The second leads beyond the slides: the first is carried out, then the second says why it is not."""
+    shop = kit.shop(kit.limits(position=0.6))
     start = kit.position(shop.start)
-    chain = Chain(shop).lin(by(start, 0.0, 0.1, 0.0)).lin(by(start, 0.0, 0.1, 9.0), blend=None)
+    chain = Chain(shop).lin(by(start, 0.0, 0.1, 0.0)).lin(by(start, 0.0, 0.1, 0.4), blend=None)
     with pytest.raises(Exception, match="out of reach") as caught:
         chain.run()
     assert caught.value.diagnostics[0].place == shop.pacer.locate(chain.blocks[1].origin)

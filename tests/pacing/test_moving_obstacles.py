@@ -76,7 +76,7 @@ def smallest_distance(cell, result):
 
 
 @pytest.mark.req("TRF-13")
-@pytest.mark.parametrize("tick", [pytest.param(5, marks=pytest.mark.slow), 20])
+@pytest.mark.parametrize("tick", [*(pytest.param(tick, marks=pytest.mark.slow) for tick in (5, 20)), 40])
 def test_the_elbow_makes_room_for_a_ball(tmp_path, tick):
     plain, avoiding = run(tmp_path, False, tick), run(tmp_path, True, tick)
     near = avoiding.clearances

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -55,6 +56,12 @@ def paced(name: str, limits, dt: float = 0.01, frozen: tuple[int, ...] = ()) -> 
     return pace_path(motion_of(name, dt), robot.model(limits, frozen), solver)
 
 
+@cache
+def slowed(name: str, dt: float) -> PacedPath | Failure:
+    """The motion under limits that slow it down, once for all tests that look at it."""
+    return paced(name, slow_limits(name, 0.5), dt)
+
+
 @robots
 @pytest.mark.parametrize("wide", [False, True])
 def test_undisturbed_motions_are_the_very_rows_of_the_walk(name: str, wide: bool) -> None:
@@ -81,7 +88,7 @@ def test_undisturbed_motions_are_the_very_rows_of_the_walk(name: str, wide: bool
 )
 def test_disturbed_motions_are_planned_and_keep_every_promise(name: str, dt: float) -> None:
     limits = slow_limits(name, 0.5)
-    found = paced(name, limits, dt)
+    found = slowed(name, dt)
     assert isinstance(found, PacedPath)
     assert found.planned
     assert found.iterations == 0
@@ -96,7 +103,7 @@ def test_disturbed_motions_are_planned_and_keep_every_promise(name: str, dt: flo
 
 @of_seven
 def test_what_is_lost_is_what_the_motion_takes_longer(name: str) -> None:
-    found = paced(name, slow_limits(name, 0.5))
+    found = slowed(name, 0.01)
     longer = 0.01 * (len(found.q) - motion_of(name, 0.01).plan.ticks)
     assert longer > 0.05
     assert sum(part.lost for part in found.slowings) == pytest.approx(longer, rel=1e-9)
@@ -107,7 +114,7 @@ def test_what_is_lost_is_what_the_motion_takes_longer(name: str) -> None:
 def test_the_joint_that_is_blamed_runs_at_its_limit(name: str) -> None:
     """Where the clock was slowed for a joint's speed, that joint is within 1 % of it in some row there."""
     limits = slow_limits(name, 0.5)
-    found = paced(name, limits, 0.001)
+    found = slowed(name, 0.001)
     speeds = np.diff(np.vstack([machine(name).start, found.q]), axis=0) / 0.001
     fast = [part for part in found.slowings if part.governor is Governor.SPEED and part.joint >= 0]
     assert fast

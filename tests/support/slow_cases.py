@@ -27,8 +27,20 @@ def grid_of(name: str) -> PathGrid:
     return path_grid(path, Trapezoid.fastest(path.length, *SPEEDS[name]))
 
 
+_WALKED: dict[tuple, Passage] = {}
+
+
 def walked(name: str, limits: JointLimits, frozen: tuple[int, ...] = ()) -> Passage:
-    """The elastic walk with the usual reserve."""
+    """The elastic walk with the usual reserve, each made once; nobody may change it."""
+    sides = [side.tobytes() for kind in ("position", "speed", "acceleration") for side in limits.pair(kind)]
+    asked = name, *sides, frozen
+    if asked not in _WALKED:
+        _WALKED[asked] = _walked(name, limits, frozen)
+        _WALKED[asked].q.flags.writeable = False
+    return _WALKED[asked]
+
+
+def _walked(name: str, limits: JointLimits, frozen: tuple[int, ...]) -> Passage:
     robot, grid = machine(name), grid_of(name)
     least = LeastMotion(robot.weights)
     bounds = reserved(limits, grid.intervals + 1, RESERVE)

@@ -17,6 +17,8 @@ Painter: TypeAlias = Callable[[SourceText, int], str]
 
 
 def _display_width(text: str) -> int:
+    if text.isascii() and text.isprintable():
+        return len(text)
     return sum(
         0 if combining(c) else TAB_WIDTH if c == "\t" else 2 if east_asian_width(c) in "WF" else 1
         for c in text

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 from types import SimpleNamespace
 
 import numpy as np
@@ -36,6 +37,20 @@ def plan(name: str, limits, dt: float, frozen: tuple[int, ...] = ()) -> PlannedM
     path = robot.line(WAYS[name], (0.1, -0.2, 0.15))
     law = Trapezoid.fastest(path.length, *SPEEDS[name])
     return plan_motion(robot.model(limits, frozen), robot.task(path, law, dt))
+
+
+@cache
+def slowed(name: str, dt: float) -> PlannedMotion | Refusal:
+    """The motion under limits that slow it down, once for all tests that look at it."""
+    return plan(name, slow_limits(name, 0.5), dt)
+
+
+@cache
+def with_six_joints() -> PlannedMotion:
+    """The only way of arm7 with one joint frozen, without limits."""
+    found = plan("arm7", machine("arm7").unlimited(), 0.01, frozen=(2,))
+    assert isinstance(found, PlannedMotion)
+    return found
 
 
 def assert_promised(name: str, limits, found: PlannedMotion, dt: float) -> None:
@@ -83,7 +98,7 @@ def test_what_came_too_near_with_the_least_reserve_is_the_reason(monkeypatch) ->
 )
 def test_rows_of_a_slowed_motion_keep_every_promise(name: str, dt: float) -> None:
     limits = slow_limits(name, 0.5)
-    found = plan(name, limits, dt)
+    found = slowed(name, dt)
     assert isinstance(found, PlannedMotion)
     assert found.timed.clock.duration > 1.02 * machine_law(name).duration
     assert_promised(name, limits, found, dt)
@@ -95,8 +110,7 @@ def machine_law(name: str) -> Trapezoid:
 
 @pytest.mark.parametrize("name", ["arm7"])
 def test_ticks_change_the_duration_by_a_tick_only(name: str) -> None:
-    limits = slow_limits(name, 0.5)
-    times = [len(plan(name, limits, dt).q) * dt for dt in (0.001, 0.01)]
+    times = [len(slowed(name, dt).q) * dt for dt in (0.00025, 0.01)]
     assert times[1] == pytest.approx(times[0], abs=0.012)
 
 
@@ -145,7 +159,7 @@ def test_a_clock_that_is_too_fast_is_slowed_by_the_check_of_its_rows(name: str, 
         return clock_bounds(curve, limits, rates, acc, reserves=Reserves(-0.02, -0.05))
 
     limits = slow_limits(name, 0.5)
-    plain = plan(name, limits, 0.01)
+    plain = slowed(name, 0.01)
     monkeypatch.setattr(ladder, "clock_bounds", too_fast)
     found = plan(name, limits, 0.01)
     assert isinstance(found, PlannedMotion)
@@ -162,8 +176,7 @@ def test_a_clock_that_is_too_fast_is_slowed_by_the_check_of_its_rows(name: str, 
 def test_a_position_limit_that_cuts_the_only_way_is_a_failed_step() -> None:
     """Six free joints of arm7 have one way; a limit across it leaves none."""
     robot = machine("arm7")
-    free = plan("arm7", robot.unlimited(), 0.01, frozen=(2,))
-    assert isinstance(free, PlannedMotion)
+    free = with_six_joints()
     way = free.q[:, 0] - robot.start[0]
     cut = robot.start[0] + 0.5 * way[-1]
     lower, upper = np.full(7, -np.inf), np.full(7, np.inf)
@@ -190,8 +203,7 @@ def test_a_joint_that_cannot_accelerate_leaves_no_way_for_six() -> None:
 def test_a_joint_that_may_not_go_the_needed_way_stops_the_clock_or_the_walk() -> None:
     """Speed 0 on the one side that six joints need: no clock, however slow."""
     robot = machine("arm7")
-    free = plan("arm7", robot.unlimited(), 0.01, frozen=(2,))
-    assert isinstance(free, PlannedMotion)
+    free = with_six_joints()
     lower, upper = np.full(7, -9.0), np.full(7, 9.0)
     (upper if free.q[-1, 0] > robot.start[0] else lower)[0] = 0.0
     found = plan("arm7", robot.unlimited().with_pair("speed", lower, upper), 0.01, frozen=(2,))
