@@ -65,7 +65,7 @@ def test_program_text_to_verified_stream(inside, folder, names):
     (folder / "p.irl").write_text(
         text_of(body.replace("top, far ANGLE", "top, side ANGLE")), encoding="utf-8"
     )
-    done = inside("run", "p.irl", "-o", "p.irdata", "-o", "p.npz")
+    done = inside("run", "p.irl", "--tick", "100", "-o", "p.irdata", "-o", "p.npz")
     assert done.returncode == 0, done.stderr
     assert done.stdout.count(" checks passed") == 2
     assert {"p.irdata", "p.npz"} <= set(names(folder))

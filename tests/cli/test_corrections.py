@@ -210,12 +210,12 @@ def test_a_ramp_beyond_the_joints_uses_what_they_keep_for_it(tmp_path):
 @pytest.mark.parametrize(
     "change",
     [
-        "FREEZESTART 3;\nMOVE LIN store;\nWAIT 1 SEC;\nFREEZEEND;",
+        "FREEZESTART 3;\nMOVE LIN store;\nWAIT 0.5 SEC;\nFREEZEEND;",
         "R_WEIGHTS := (9., 1., 9., 1., 1., 9., 1.);",
     ],
 )
 def test_another_nearest_posture_is_gone_to_without_ringing(tmp_path, change):
-    body = f"MOVE LIN next;\nWAIT 1 SEC;\n{change}\nWAIT 1 SEC;"
+    body = f"MOVE LIN next;\nWAIT 0.5 SEC;\n{change}\nWAIT 1 SEC;"
     path = files(tmp_path, body, ARM.format(tick=10), DECLARED)
     found = corrected(path, constant(0, 0.04, -0.04, 0, 0, 0))
     freed = found.offset[found.block == found.block[-1]]

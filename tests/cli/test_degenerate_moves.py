@@ -10,7 +10,7 @@ import pytest
 import irlx
 from long_run import first
 
-HOME = "MOVE PTP POSITION(441, 200, 324);"
+HOME = "MOVE LIN POSITION(441, 200, 324);"
 
 
 def run(folder: Path, statements: str, robot: str = "arm7", first: str = HOME) -> irlx.Run:

@@ -125,11 +125,11 @@ def test_limits_that_count_only_without_the_mark(inside, folder):
 
 
 def test_a_robot_without_any_limits(inside, folder):
-    text = re.sub(r"<limit [^>]*/>", "", (ROBOTS / "arm7.urdf").read_text())
+    text = re.sub(r"<limit [^>]*/>", "", (ROBOTS / "planar3.urdf").read_text())
     (folder / "r.urdf").write_text(text)
     assert inside("new", "first", "--urdf", "r.urdf").returncode == 0
     table = tomllib.loads((folder / "first.toml").read_text())
-    assert table["robot"]["limits"] == {"speed": [60] * 7, "acceleration": [240] * 7}
+    assert table["robot"]["limits"] == {"speed": [60] * 3, "acceleration": [240] * 3}
     judged(folder, "first")
 
 

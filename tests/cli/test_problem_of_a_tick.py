@@ -15,6 +15,7 @@ from long_run import first
 pytestmark = pytest.mark.req("TRF-01")
 
 PROGRAM = Path(__file__).parents[2] / "programs" / "koch" / "square.irl"
+LINE = PROGRAM.with_name("line.irl")
 
 
 def solution(problem: dict) -> np.ndarray:
@@ -30,7 +31,7 @@ def solution(problem: dict) -> np.ndarray:
 @pytest.mark.parametrize("tick", first(1, [12, 30]))
 def test_its_solution_is_the_first_newton_step(tick: int) -> None:
     """Ticks in which no bound holds: the first step leaves what is of second order in its length."""
-    run = irlx.run(PROGRAM, tick_ms=20, explain_tick=tick)
+    run = irlx.run(LINE, tick_ms=20, explain_tick=tick)
     problem = run.explanation.to_plain()["problem"]
     assert problem["rows"] == ("x", "y", "z", "rx", "ry", "rz")
     assert problem["joints"] == run.joint_names

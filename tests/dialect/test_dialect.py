@@ -73,7 +73,7 @@ def test_the_parts_that_are_there_are_placed(runs):
     assert (set_to[0], set_to[-1]) == (("OUT_2", 1.0), ("OUT_2", 0.0))
     assert grips == [1.0, 0.0] * (len(grips) // 2)
     lamps = [value for port, value in set_to if port == "OUT_3"]
-    assert len(grips) // 2 + len(lamps) // 2 == 6
+    assert len(grips) // 2 + len(lamps) // 2 == 4
     assert len(lamps) > 0
     moves = [
         record for record in runs["pick_and_place"].stream.records if isinstance(record.block, MoveBlock)
