@@ -117,8 +117,11 @@ def test_what_bash_and_fish_complete(folder, script, shell, call):
     assert dict(zip(LINES, found, strict=True)) == LINES
 
 
-def typed(call, folder, first, keys, wanted):
-    """What an interactive shell shows after a first line and then keys, until that holds `wanted`."""
+def typed(call, folder, first, keys):
+    """What an interactive shell shows after a first line, and then after each of the keys.
+
+    Of the keys, the mapping has what will be shown when the shell is ready with them.
+    """
     if shutil.which(call[0]) is None:
         pytest.skip(f"{call[0]} is not installed")
     environment = {"PATH": os.environ["PATH"], "HOME": str(folder), "TERM": "xterm", "COLUMNS": "200"}
@@ -127,31 +130,32 @@ def typed(call, folder, first, keys, wanted):
         call, cwd=folder, env=environment, stdin=end, stdout=end, stderr=end, start_new_session=True
     )
     os.close(end)
-    shown, sent, latest = "", [f"{first}; echo rea''dy\n", keys], time.monotonic() + 20
-    os.write(terminal, sent.pop(0).encode())
-    while time.monotonic() < latest and (sent or not re.search(wanted, shown)):
-        if select.select([terminal], [], [], 0.2)[0]:
-            shown += os.read(terminal, 65536).decode(errors="replace")
-        elif sent and "ready" in shown:
-            # Silent again: it waits for keys.
-            shown = ""
-            os.write(terminal, sent.pop(0).encode())
+    found = {}
+    for typed_in, wanted in {f"{first}; echo rea''dy\n": "ready", **keys}.items():
+        # What stands on the line goes first.
+        os.write(terminal, f"\x15{typed_in}".encode())
+        shown, latest, silent = "", time.monotonic() + 20, False
+        while time.monotonic() < latest and not (silent and re.search(wanted, shown)):
+            silent = not select.select([terminal], [], [], 0.2)[0]
+            shown += "" if silent else os.read(terminal, 65536).decode(errors="replace")
+        found[typed_in] = shown
     shell.kill()
     shell.wait()
     os.close(terminal)
-    return shown
+    return found
 
 
 ZSH = "fpath=($PWD/functions $fpath); autoload -Uz compinit; compinit -u -D"
 
 
-@pytest.mark.parametrize(
-    ("keys", "wanted"),
-    [("irlx ver\t", "irlx verify"), ("irlx run --cell c\t", r"c\.toml"), ("irlx robots koch\t", "koch11")],
-)
-def test_what_zsh_completes(folder, script, keys, wanted):
+KEYS = {"irlx ver\t": "irlx verify", "irlx run --cell c\t": r"c\.toml", "irlx robots koch\t": "koch11"}
+
+
+def test_what_zsh_completes(folder, script):
     assert script("zsh", "functions/_irlx").startswith("#compdef irlx\n")
-    assert re.search(wanted, typed(["zsh", "-f", "-i"], folder, ZSH, keys, wanted))
+    shown = typed(["zsh", "-f", "-i"], folder, ZSH, KEYS)
+    for keys, wanted in KEYS.items():
+        assert re.search(wanted, shown[keys]), keys
 
 
 def test_tcsh_takes_its_script(folder, script):

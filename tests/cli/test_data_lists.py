@@ -5,6 +5,7 @@ import hashlib
 import pytest
 
 import irlx
+from irlx.cli.main import main
 
 pytestmark = pytest.mark.req("LANG-13")
 
@@ -182,6 +183,7 @@ def test_a_list_is_never_overwritten(inside, listed):
     assert (listed / "points.dat").read_text() == POINTS
 
 
-def test_lists_lie_beside_the_program_wherever_one_stands(command, listed):
-    done = command("check", listed / "p.irl", cwd=listed.parent)
-    assert (done.returncode, done.stderr) == (0, "")
+def test_lists_lie_beside_the_program_wherever_one_stands(listed, monkeypatch, capsys):
+    monkeypatch.chdir(listed.parent)
+    assert main(["check", str(listed / "p.irl")]) == 0
+    assert capsys.readouterr().err == ""

@@ -17,9 +17,11 @@ ELSEWHERE = {
     "irlx demo",
     "irlx demo try_it --open",
     "irlx run programs/koch/square_cyclic.irl --html square.html",
+    "irlx plot programs/koch/square.irdata -o square.svg",
 }
-"""Examples only parsed here: `test_demo.py` carries out the one, and another folder with `--open`; of the
-README the last one's program, with other files, as are the pages of others in `test_page.py`."""
+"""Examples only parsed here: `test_demo.py` carries out the first, and another folder with `--open`. The
+README runs that program for other files, and draws the figure of the last from Python; pages and figures of
+the command are for `test_page.py` and `test_plot.py`, and of two streams an example here writes one."""
 SEEN_BY_EXAMPLES = ("programs", "tests/conformance", "src/irlx/cell/robots")
 """Folders of the repository that examples name."""
 MADE_BY_RUNS = shutil.ignore_patterns("*.irdata", "*.npz", "*.csv.*", "readings.txt", "__pycache__")

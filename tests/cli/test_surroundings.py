@@ -191,7 +191,8 @@ def test_the_same_bytes_whatever_is_set(undisturbed, environment, tmp_path, pyth
 
 def test_a_figure_of_a_program_whose_name_is_no_text(undisturbed, inside):
     folder, _ = undisturbed
-    assert inside("plot", folder / "p.irdata", "-o", "p.svg").returncode == 0
+    asked = ("--joints", "1", "--show", "position", "-o", "p.svg")
+    assert inside("plot", folder / "p.irdata", *asked).returncode == 0
 
 
 def test_a_folder_that_is_gone(folder, monkeypatch, capsys):
