@@ -37,6 +37,10 @@ along the path may be shorter than 0 by this, speeds of the tool exceed by 2 PAT
 PROGRAM_EXCESS = 2e-6
 """Largest relative excess of a programmed speed or acceleration, of the tool or a PTP's joints."""
 
+JERK_TICKS = 60_000
+"""Motions of so many ticks at most keep the programmed jerk where joints slow them down: the clocks of longer
+ones are planned too coarsely for that. Beside `PROGRAM_EXCESS` it may be more by 8 PATH_STEP/dt^3."""
+
 TICK_SHARE = 1e-6
 """Part of a tick by which a move may be shorter than its TIME, or than SPEED and ACC allow: moves take whole
 ticks, and this much more than a whole number of them does not begin another. `PROGRAM_EXCESS` follows: a move

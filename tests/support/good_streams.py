@@ -413,7 +413,10 @@ def under_switches(d: Drawing) -> None:
     """A fast line that the switched limits slow down."""
     for kind in KINDS[1:]:
         d.add(f"{WORDS[kind]} {d.bounds(kind)};")
-    d.add(f"MOVE LIN {d.pose(*d.near())} SPEED := {number(3e3 * d.v)}, ACC := {number(2e4 * d.v / d.span)};")
+    law = f"SPEED := {number(3e3 * d.v)}, ACC := {number(2e4 * d.v / d.span)}"
+    if d.tick >= 1.0:
+        law += f", PROFILE := 'S_CURVE', JERK := {number(2e5 * d.v / d.span**2)}"
+    d.add(f"MOVE LIN {d.pose(*d.near())} {law};")
     d.add(*(f"{WORDS[kind]}END;" for kind in KINDS[1:]))
 
 

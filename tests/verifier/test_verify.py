@@ -37,7 +37,7 @@ def test_good_stream_passes(good: JointStream, robot) -> None:
     report = verify_stream(good, robot)
     assert report.passed, str(report)
     assert {check.name for check in report.unchecked} == UNASKED
-    unused = {"constraints", "clearance", "waits still", "waiting time", "tolerance bands"}
+    unused = {"constraints", "clearance", "waits still", "waiting time", "tolerance bands", "programmed jerk"}
     absent = (
         {"file", "written rates"} | unused | {name for name in CHECKS if name.startswith("reconfiguration")}
     )

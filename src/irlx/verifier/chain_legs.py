@@ -8,7 +8,7 @@ from math import sqrt
 
 import numpy as np
 
-from irlx.blocks import Blend, MotionLaw, MoveKind
+from irlx.blocks import Blend, MotionLaw, MoveKind, Profile
 from irlx.promises import PROGRAM_EXCESS
 from irlx.streams.joint_stream import Floats, Integers
 from irlx.verifier.demands import Demand
@@ -39,8 +39,9 @@ class NoCurve(Exception):
 @dataclass(frozen=True, eq=False)
 class ChainLegs:
     """K legs, with the bounds on each (K,): `speed` m/s, `turn` rad/s, `acc` m/s2 and `along`, the same where
-    its turn is counted in. `last_of` (M,): the last leg of each of M moves. `free_end`: way on the last leg
-    from which on nobody knows how it goes on, None where it ends.
+    its turn is counted in, `jerk` m/s3, infinite where none is asked for. `last_of` (M,): the last leg of
+    each of M moves. `free_end`: way on the last leg from which on nobody knows how it goes on, None where it
+    ends.
     """
 
     legs: tuple[Leg, ...]
@@ -48,6 +49,7 @@ class ChainLegs:
     turn: Floats
     acc: Floats
     along: Floats
+    jerk: Floats
     last_of: Integers
     free_end: float | None
 
@@ -77,9 +79,15 @@ def legs_of(chain: tuple[Demand, ...], dt: float) -> ChainLegs:
         np.array([law.speed_ori for law in laws]),
         np.array([law.acc for law in laws]),
         np.array(along),
+        np.array([jerk_of(law) for law in laws]),
         np.cumsum([len(own) for own in moves]) - 1,
         free_end,
     )
+
+
+def jerk_of(law: MotionLaw) -> float:
+    """Largest jerk along the path, m/s3, infinite where a law bounds none."""
+    return law.jerk if law.profile is Profile.S_CURVE and law.jerk is not None else np.inf
 
 
 def end_reach(demand: Demand) -> float:

@@ -67,6 +67,7 @@ CHECKS = (
     "path progress",
     "programmed speed",
     "programmed acceleration",
+    "programmed jerk",
     "programmed time",
     "reconfiguration position",
     "reconfiguration orientation",

@@ -8,7 +8,14 @@ from math import sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from irlx.promises import FOLLOWED_TURN, PATH_ORIENTATION, PATH_POSITION, PATH_STEP, PROGRAM_EXCESS
+from irlx.promises import (
+    FOLLOWED_TURN,
+    JERK_TICKS,
+    PATH_ORIENTATION,
+    PATH_POSITION,
+    PATH_STEP,
+    PROGRAM_EXCESS,
+)
 from irlx.streams.joint_stream import Floats, Integers
 from irlx.verifier.chain_legs import ChainLegs, end_reach
 from irlx.verifier.demands import Demand
@@ -19,6 +26,7 @@ from irlx.verifier.geometry.rotations import angle_between
 from irlx.verifier.geometry.task_turns import followed_off, turned_off
 from irlx.verifier.judges.chain_end import ways_on_last_circle
 from irlx.verifier.judges.chain_start import start_of_chain
+from irlx.verifier.judges.jerk import add_jerk
 from irlx.verifier.tools import Pose
 
 HANDS_OVER = 2
@@ -37,6 +45,7 @@ class ChainTallies:
     progress: Tally
     speed: Tally
     acceleration: Tally
+    jerk: Tally
 
 
 class _Waiting:
@@ -95,14 +104,15 @@ class ChainRows:
         self._firsts = np.array([demand.move.start + 1 for demand in chain])
         self._lasts = np.array([demand.move.last for demand in chain])
         self._ids = np.array([demand.move.block.id for demand in chain])
-        # Of the last two rows judged: way, position, bounds. Before the chain the tool stood.
-        self._alongs, self._points = np.zeros(2), np.array([start[0], start[0]])
-        self._accelerations = np.zeros(2)
+        # Of the last rows judged: way, position, bounds. Before the chain the tool stood.
+        self._alongs, self._points = np.zeros(3), np.array([start[0], start[0]])
+        self._accelerations, self._jerks = np.zeros(2), np.zeros(3)
         self._speeds, self._sharp = np.zeros((3, 1)), np.zeros(1, dtype=np.bool_)
         self._leg = np.zeros(1, dtype=np.int64)
         self._furthest, self._unknown = 0.0, False
-        self._fresh = 0
-        """So many of the rows judged next have fewer than two known ones before them (`ChainStart`)."""
+        self._fresh = self._cornered = 0
+        """So many of the rows judged next have fewer than two known ones before them (`ChainStart`), and
+        fewer than three."""
         self._wanted = start[1][None, :3]
         first = legs.legs[0].curve
         self._reaches = min(start_reach, first.room[0]), end_reach(chain[-1])
@@ -152,8 +162,9 @@ class ChainRows:
         self._waiting = _Waiting((left.positions[0], left.rotations[0]))
         if self._held is not None:
             self._held = _Waiting((left.positions[0], left.rotations[0]))
-        self._alongs, self._points = start.ways, begun.positions[[max(last - 1, 0), last]]
+        self._alongs, self._points = start.ways[[0, 0, 1]], begun.positions[[max(last - 1, 0), last]]
         self._furthest, self._fresh = float(start.ways[-1]), start.fresh
+        self._cornered = start.fresh + 1
         self._hint = self._furthest if len(legs) == 1 else 0.0
         self._way.begin_at(self._furthest)
         way, curve = start.ways[-1:], legs[0].curve
@@ -224,10 +235,12 @@ class ChainRows:
         self._add_progress(rows, placed)
         self._add_labels(rows, placed)
         alongs = np.concatenate([self._alongs, placed.along])
-        near = self._near(placed, np.abs(np.diff(alongs[1:])))
-        self._add_speed(rows, placed, alongs, near)
-        self._add_acceleration(rows, placed, alongs, near)
-        self._alongs, self._fresh = alongs[-2:], max(self._fresh - count, 0)
+        near = self._near(placed, np.abs(np.diff(alongs[2:])))
+        self._add_speed(rows, placed, alongs[1:], near)
+        self._add_acceleration(rows, placed, alongs[1:], near)
+        self._add_jerk(rows, alongs, near)
+        self._alongs, self._fresh = alongs[-3:], max(self._fresh - count, 0)
+        self._cornered = max(self._cornered - count, 0)
 
     def _add_progress(self, rows: Integers, placed: Placed) -> None:
         furthest = np.maximum.accumulate(np.concatenate([[self._furthest], placed.along]))
@@ -339,10 +352,25 @@ class ChainRows:
         high = bound * (1.0 + PROGRAM_EXCESS) + 4.0 * PATH_STEP / self._dt**2
         self._tallies.acceleration.add(rows, rates, bound, ~(rates <= high), rates / high, "m/s2")
 
+    def _add_jerk(self, rows: Integers, alongs: Floats, near: tuple[Integers, Integers, Integers]) -> None:
+        """Along the way, between four rows the most that is allowed at any of them."""
+        allowed = np.max([self._legs.jerk[leg] for leg in near], axis=0)
+        bound = np.concatenate([self._jerks, allowed])
+        self._jerks = bound[-3:]
+        told = slice(self._cornered, None)
+        self._add_jerks(rows[told], alongs[told], bound[told])
+
+    def _add_jerks(self, rows: Integers, alongs: Floats, bound: Floats) -> None:
+        if self._lasts[-1] - self._firsts[0] < JERK_TICKS:
+            add_jerk(self._tallies.jerk, rows, alongs, bound, self._dt)
+
     def _add_end(self, waiting: _Waiting) -> None:
         """The chain ends at its last target, all of its way having been run."""
         row, goal = self._lasts[-1:], self._chain[-1].end.pose
         assert goal is not None
+        if not self._unknown and not self._cornered:
+            # Behind it the tool stands.
+            self._add_jerks(row, self._alongs[[0, 1, 2, 2]], self._jerks[[0, 1, 2, 2]])
         off = np.linalg.norm((waiting.positions[-1] - goal[0])[None], axis=1)
         self._tallies.goal[0].add(row, off, PATH_POSITION)
         attitude = waiting.rotations[-1:]

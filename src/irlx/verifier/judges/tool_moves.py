@@ -10,6 +10,7 @@ import numpy as np
 from irlx.blocks import MoveKind
 from irlx.promises import (
     FOLLOWED_TURN,
+    JERK_TICKS,
     PATH_ORIENTATION,
     PATH_POSITION,
     PATH_STEP,
@@ -19,7 +20,7 @@ from irlx.promises import (
     rounding_allowance,
 )
 from irlx.streams.joint_stream import Floats, Integers
-from irlx.verifier.chain_legs import NoCurve, Unplaced, legs_of
+from irlx.verifier.chain_legs import NoCurve, Unplaced, jerk_of, legs_of
 from irlx.verifier.demands import Demand
 from irlx.verifier.evidence import Evidence
 from irlx.verifier.findings.finding import Check
@@ -28,6 +29,7 @@ from irlx.verifier.geometry.paths import LineWay
 from irlx.verifier.geometry.rotations import angle_between
 from irlx.verifier.geometry.task_turns import followed_off
 from irlx.verifier.judges.chained_moves import HANDS_OVER, ChainRows, ChainTallies
+from irlx.verifier.judges.jerk import add_jerk
 from irlx.verifier.moves import MoveRows
 from irlx.verifier.rows import Rows, Stretch
 from irlx.verifier.tools import Pose
@@ -50,10 +52,11 @@ class ToolMoveChecks:
         self._path = evidence.tally("path position", "m"), evidence.tally("path orientation", "rad")
         self._progress = evidence.tally("path progress", "m|rad")
         self._speed, self._acceleration = evidence.joint_rates
+        self._jerk = evidence.tally("programmed jerk", "m/s3")
         self._time = evidence.tally("programmed time", "s")
         self._bands = evidence.tally("tolerance bands", "m|rad")
         self._course: Course | None = None
-        self._along, self._furthest = np.zeros(2), 0.0
+        self._along, self._furthest = np.zeros(3), 0.0
         self._wanted = np.eye(3)[None]
         self._skipped: dict[int, str] = {}
         self._chains = {demand.move.block.id: chain for chain in evidence.chains for demand in chain}
@@ -92,7 +95,9 @@ class ToolMoveChecks:
         self._chain.take((rows.positions[here], rows.attitudes[here]), stretch.rows, stretch.block, final)
 
     def _chain_of(self, chain: tuple[Demand, ...]) -> ChainRows | None:
-        tallies = ChainTallies(self._goal, self._path, self._progress, self._speed, self._acceleration)
+        tallies = ChainTallies(
+            self._goal, self._path, self._progress, self._speed, self._acceleration, self._jerk
+        )
         try:
             return ChainRows(chain, legs_of(chain, self._dt), self._dt, tallies, self._start_reach(chain[0]))
         except Unplaced as error:
@@ -134,7 +139,7 @@ class ToolMoveChecks:
             self._course = course_of(
                 self._evidence, move, self._start(rows.pose(before, move.block.id), move)
             )
-            self._along, self._furthest = np.zeros(2), 0.0
+            self._along, self._furthest = np.zeros(3), 0.0
         course = self._course
         demand = self._evidence.demands[move.block.id]
         if stretch.ends and move.finished and not (demand.passes or demand.follows):
@@ -247,14 +252,25 @@ class ToolMoveChecks:
         # An arc too short to be one goes by its chord, perhaps by the angle.
         short_arc = found.by_angle and not isinstance(course.way, LineWay)
         bound = course.move.law.acc_ori if short_arc else course.bounds[1]
-        self._add_acceleration(stretch, along, bound, "rad/s2" if found.by_angle else "m/s2")
-        self._along = along[-2:]
+        self._add_acceleration(stretch, along[1:], bound, "rad/s2" if found.by_angle else "m/s2")
+        if not found.by_angle:
+            self._add_jerk(stretch, along, course.move)
+        self._along = along[-3:]
         return found.wanted
 
     def _add_acceleration(self, stretch: Stretch, along: Floats, bound: float, unit: str) -> None:
         rates = np.abs(np.diff(along, n=2)) / self._dt**2
         high = bound * (1.0 + PROGRAM_EXCESS) + 4.0 * PATH_STEP / self._dt**2
         self._acceleration.add(stretch.rows, rates, bound, ~(rates <= high), rates / high, unit)
+
+    def _add_jerk(self, stretch: Stretch, along: Floats, move: MoveRows) -> None:
+        rows, bound = stretch.rows, jerk_of(move.law)
+        if move.last - move.start > JERK_TICKS:
+            return
+        if stretch.ends and move.finished:
+            # Behind its end the tool stands.
+            along, rows = np.append(along, along[-1]), np.append(rows, rows[-1])
+        add_jerk(self._jerk, rows, along, np.full(len(along), bound), self._dt)
 
     def _add_tool_speed(
         self, rows: Rows, stretch: Stretch, course: Course, allowance: Allowance, wanted: Floats | None
@@ -332,7 +348,7 @@ class ToolMoveChecks:
 
     def checks(self) -> list[Check]:
         """Goals, paths, programmed speed, acceleration and time."""
-        tallies = (*self._goal, *self._path, self._progress, self._speed, self._acceleration)
+        tallies = (*self._goal, *self._path, self._progress, self._speed, self._acceleration, self._jerk)
         reason = "; ".join(sorted(set(self._skipped.values())))
         if self._skipped:
             for tally in tallies:

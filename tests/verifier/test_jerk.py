@@ -1,0 +1,162 @@
+"""The jerk of S curves, taken from rows: third differences of the way are at most what the program says."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from irlx.blocks import Blend, Profile
+from irlx.streams import JointStream
+from irlx.verifier import rows, verify_stream
+from irlx.verifier.judges import chained_moves, tool_moves
+from made_chains import DT, LAW, START, STEPS, TURNS, lin, lines, run, start_of
+from passing_moves import trapezoid, way_of
+
+pytestmark = [pytest.mark.req("MOT-03"), pytest.mark.req("STR-06")]
+
+SHORT = [tuple(0.2 * np.array(step)) for step in STEPS]
+DISTANCES = [0.01, 0.01]
+ROUNDING = 8e-9 / DT**3
+"""Jerk that rounding of tool poses may pretend, m/s3."""
+
+
+def s_curve(jerk: float | None):
+    return LAW if jerk is None else replace(LAW, profile=Profile.S_CURVE, jerk=jerk)
+
+
+def chain_of(kit, jerks, bump: tuple[float | None, float] | None = None) -> tuple[JointStream, np.ndarray]:
+    """Three joined lines with so many m/s3 each, and their way at every row, the start first.
+
+    With `bump` (share of the way, None for the first corner, and m) the row nearest to it is further on by so
+    much.
+    """
+    maker = kit.Maker(START.copy())
+    curves = lines(start_of(kit), SHORT, TURNS)
+    way = way_of(curves, DISTANCES)
+    s = way.length * kit.smooth(400)
+    if bump is not None:
+        place = way.ends[0] if bump[0] is None else bump[0] * way.length
+        s[np.argmin(np.abs(s - place))] += bump[1]
+    blends = [Blend(distance=DISTANCES[0]), Blend(distance=DISTANCES[1]), None]
+    pairs = zip(curves, blends, jerks, strict=True)
+    run(maker, way, [lin(curve, blend, law=s_curve(jerk)) for curve, blend, jerk in pairs], s)
+    return maker.stream(), s
+
+
+def jerks_of(s: np.ndarray) -> np.ndarray:
+    """Jerk (R + 2,) of ways (R,) from rest to rest, at their rows and two more."""
+    return np.abs(np.diff(np.concatenate([np.zeros(3), s, np.full(2, s[-1])]), 3)) / DT**3
+
+
+def with_law(stream: JointStream, law) -> JointStream:
+    records = [replace(record, block=replace(record.block, law=law)) for record in stream.records]
+    return replace(stream, records=tuple(records))
+
+
+def jerk_check(stream: JointStream, robot):
+    return verify_stream(stream, robot)["programmed jerk"]
+
+
+@pytest.mark.parametrize("kind", ["line", "arc"])
+def test_a_move_is_judged_by_its_third_differences(gantry_kit, robot, kind: str) -> None:
+    """The way of the rows is known: bounds a little above and below what it has tell where it is."""
+
+    def made(jerk: float) -> tuple[JointStream, np.ndarray]:
+        maker = gantry_kit.Maker(START.copy())
+        law = replace(gantry_kit.LAW, profile=Profile.S_CURVE, jerk=jerk)
+        if kind == "line":
+            length = 0.5
+            maker.lin((0.2, -0.1 + length, 0.3), ticks=50)
+        else:
+            length = 0.3 * np.pi
+            maker.circle((0.2, 0.2), 0.5 * np.pi, np.pi, ticks=100)
+        return with_law(maker.stream(), law), length * gantry_kit.smooth(50 if kind == "line" else 100)
+
+    _, s = made(1.0)
+    found = jerks_of(s)
+    peak = float(np.max(found))
+    good, bad = (jerk_check(made(peak * share - ROUNDING)[0], robot) for share in (1.0001, 0.9999))
+    assert good.status == "ok"
+    assert good.worst.value == pytest.approx(peak, rel=1e-4)
+    assert bad.status == "failed"
+    # Rows are counted from the start, which is row 0.
+    assert bad.first.tick == np.flatnonzero(found > 0.9999 * peak)[0] + 1
+    assert bad.first.line == 4
+
+
+@pytest.mark.parametrize("place", [0.1, 0.35, 0.5, 0.9])
+def test_joined_moves_are_judged_on_their_blends_as_well(gantry_kit, robot, place: float) -> None:
+    even, s = chain_of(gantry_kit, [60.0] * 3)
+    assert np.max(jerks_of(s)) < 3.0
+    assert jerk_check(even, robot).status == "ok"
+    uneven, s = chain_of(gantry_kit, [60.0] * 3, (place, 2e-6))
+    found = jerks_of(s)
+    check = jerk_check(uneven, robot)
+    assert check.status == "failed"
+    assert check.first.tick == np.flatnonzero(found > 60.0 + ROUNDING)[0] + 1
+    assert check.worst.value == pytest.approx(np.max(found), abs=ROUNDING)
+
+
+def test_each_of_joined_moves_has_its_own(gantry_kit, robot) -> None:
+    """A trapezoid may jump; a row between two moves has what is allowed on either of them."""
+    on_first, on_last = (0.1, 2e-6), (0.9, 2e-6)
+    for jerks, bump, status in (
+        ([None, 60.0, 60.0], on_first, "ok"),
+        ([60.0, 60.0, None], on_first, "failed"),
+        ([60.0, 60.0, None], on_last, "ok"),
+        ([None, None, 60.0], on_last, "failed"),
+        ([100.0, 60.0, 60.0], on_first, "ok"),
+        # Three of the four rows that tell of it belong to the second move.
+        ([100.0, 20.0, 20.0], (None, 2e-6), "ok"),
+        ([20.0, 20.0, 100.0], (None, 2e-6), "failed"),
+    ):
+        assert jerk_check(chain_of(gantry_kit, jerks, bump)[0], robot).status == status, (jerks, bump)
+
+
+def test_the_start_and_the_end_count_and_none_is_asked_of_a_trapezoid(gantry_kit, robot) -> None:
+    for place, tick in ((0.0, 1), (1.0, None)):
+        stream, s = chain_of(gantry_kit, [20.0] * 3, (place, -2e-6 if place else 2e-6))
+        check = jerk_check(stream, robot)
+        assert check.status == "failed"
+        assert check.first.tick == (tick or np.flatnonzero(jerks_of(s) > 20.0 + ROUNDING)[0] + 1)
+    assert jerk_check(chain_of(gantry_kit, [None] * 3)[0], robot).status == "no case"
+
+
+def test_the_last_row_counts(gantry_kit, robot) -> None:
+    """A move that stops within a tick: only differences that reach behind its end tell."""
+    maker = gantry_kit.Maker(START.copy())
+    (curve,) = lines(start_of(gantry_kit), SHORT[:1], TURNS[:1])
+    way = way_of([curve], [])
+    s = trapezoid(way.length, 0.1, 0.4, DT)
+    s = np.append(s[:-3], way.length)
+    found = jerks_of(s)
+    assert np.argmax(found) >= len(s) - 1
+    run(maker, way, [lin(curve, law=s_curve(0.9 * float(np.max(found))))], s)
+    check = jerk_check(maker.stream(), robot)
+    assert check.status == "failed"
+    assert check.first.tick >= len(s)
+
+
+def test_portions_do_not_matter(gantry_kit, robot, monkeypatch) -> None:
+    whole = jerk_check(chain_of(gantry_kit, [60.0] * 3, (0.5, 2e-6))[0], robot)
+    monkeypatch.setattr(rows, "PORTION", 16)
+    parts = jerk_check(chain_of(gantry_kit, [60.0] * 3, (0.5, 2e-6))[0], robot)
+    assert parts.first.tick == whole.first.tick
+    assert parts.worst.value == pytest.approx(whole.worst.value, rel=1e-6)
+
+
+@pytest.mark.parametrize("joined", [True, False])
+def test_longer_motions_are_promised_none(gantry_kit, robot, monkeypatch, joined: bool) -> None:
+    if joined:
+        stream, _ = chain_of(gantry_kit, [60.0] * 3, (0.1, 2e-6))
+    else:
+        maker = gantry_kit.Maker(START.copy())
+        law = replace(gantry_kit.LAW, profile=Profile.S_CURVE, jerk=1.0)
+        maker.lin((0.2, 0.1, 0.3), ticks=50)
+        stream = with_law(maker.stream(), law)
+    judge = chained_moves if joined else tool_moves
+    for most, status in ((len(stream.q), "failed"), (20, "no case")):
+        monkeypatch.setattr(judge, "JERK_TICKS", most)
+        assert jerk_check(stream, robot).status == status
