@@ -63,6 +63,19 @@ def test_the_first_row_may_lie_on_the_blend_already(name: str) -> None:
     assert start.ways.tolist() == [REACH, REACH]
 
 
+@pytest.mark.parametrize(("end_reach", "placed"), [(0.05, 1), (0.04, 2), (0.0, 2)])
+def test_the_second_row_may_lie_in_the_corner_to_the_next_ptp_already(end_reach: float, placed: int) -> None:
+    """A lone line between two PTPs that a row after the first one leaves, 0.045 m before its end."""
+    leaves = START + np.array([[0.055, 0.001, 0.0], [0.06, 0.004, 0.0], [0.06, 0.008, 0.0]])
+    point, turned = pose_at(WAY[0], 0.0525)
+    attitudes = [Rotation.identity(len(LOOSE)).as_matrix(), [turned.as_matrix()] * (1 + len(leaves))]
+    taken = np.concatenate([LOOSE, [point], leaves]), np.concatenate(attitudes)
+    start = start_of_chain(taken, legs(TOLD)[:1], START, REACH, EXACT, True, STEP, end_reach)
+    assert start is not None
+    assert (start.corner, start.placed) == (len(LOOSE), len(LOOSE) + placed)
+    assert start.fresh == 2 - placed
+
+
 def test_a_row_on_the_first_leg_is_taken_though_the_corner_might_reach_farther() -> None:
     ways = np.array([0.047, 0.065, 0.08, 0.1, 0.12, 0.14])
     start = start_of_chain(rows(ways), legs(TOLD), START, REACH, EXACT, False, STEP)

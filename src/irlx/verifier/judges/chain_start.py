@@ -40,10 +40,12 @@ def start_of_chain(
     allowance: Allowance,
     final: bool,
     step: float,
+    end_reach: float = 0.0,
 ) -> ChainStart | None:
     """Where rows (positions (R, 3), attitudes (R, ..)) come out of the corner at `start` (3,), from which it
     reaches `reach` m; None where more rows have to tell. With `final` there are no more. From one row to the
-    next the way leads on by `step` m at the most.
+    next the way leads on by `step` m at the most. Where the last leg ends in a corner as well that may reach
+    `end_reach` m.
 
     They do where one lies on the first leg beyond the reach. Where the next blend begins there already no row
     may do so: then where one is farther away than the reach, those from the first one on that lie on the way.
@@ -69,8 +71,8 @@ def start_of_chain(
             return None
         return ChainStart(first, first + 1, way[[first, first]], 1)
     second = first + 1
-    if not on[second] and _may_leave(legs, float(way[second])):
-        # So short is the leg that the second row lies on the blend to the next one already.
+    if not on[second] and _may_leave(legs, end_reach, float(way[second])):
+        # So short is the leg that the second row lies in the blend or corner at its end already.
         return ChainStart(first, second, way[[first, first]], 1)
     return ChainStart(first, second + 1, way[[first, second]])
 
@@ -97,9 +99,9 @@ def _on_first_leg(rows: Pose, curve: Curve, way: Floats | None = None) -> tuple[
     return way, on & (turned_off(rotations, curve.rotations(inside)) <= PATH_ORIENTATION)
 
 
-def _may_leave(legs: tuple[Leg, ...], way: float) -> bool:
-    """Whether a place on the first leg may lie where the blend at its end has taken over."""
-    blend = legs[0].corner.distance if len(legs) > 1 else 0.0
+def _may_leave(legs: tuple[Leg, ...], end_reach: float, way: float) -> bool:
+    """Whether a place on the first leg may lie where the blend or corner at its end has taken over."""
+    blend = legs[0].corner.distance if len(legs) > 1 else end_reach
     return way > legs[0].curve.length - blend - PATH_STEP
 
 

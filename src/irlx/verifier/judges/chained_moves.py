@@ -149,7 +149,8 @@ class ChainRows:
         begun.add(poses, rows, block)
         taken, reach = (begun.positions[1:], begun.rotations[1:]), self._reaches[0]
         corner, legs = begun.positions[0], self._legs.legs
-        start = start_of_chain(taken, legs, corner, reach, self._allowance, final, self._step)
+        end = 0.0 if self._held is None else self._reaches[1]
+        start = start_of_chain(taken, legs, corner, reach, self._allowance, final, self._step, end)
         if start is None:
             return (taken[0][:0], taken[1][:0]), rows[:0]
         self._begun = None
