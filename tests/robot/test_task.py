@@ -46,18 +46,20 @@ def test_the_matrix_of_a_part_is_its_derivative_however_far_the_rest_is(tmp_path
     _, jacobian = kinematics.tool_difference(q, pin.SE3.Identity())
     pose = kinematics.target(*kinematics.tool_pose(q))
     target = pose * random_pose(rng, float(rng.choice([1e-8, 0.1, 0.9])))
+    ahead, behind = (
+        [kinematics.target(*kinematics.tool_pose(q + side * joint)) for joint in np.eye(7)]
+        for side in (step, -step)
+    )
     for coordinates in SUBSETS:
         task = Task(coordinates)
         _, matrix = partial_difference(task, pose, jacobian, target)
-        for joint in range(7):
-            moved = []
-            for side in (step, -step):
-                away = q.copy()
-                away[joint] += side
-                there = kinematics.target(*kinematics.tool_pose(away))
-                moved.append(partial_difference(task, there, jacobian, target)[0])
-            slope = -(moved[0] - moved[1]) / (2.0 * step)
-            np.testing.assert_allclose(matrix[:, joint], slope, atol=2e-8, err_msg=str(coordinates))
+        moved = [
+            partial_difference(task, one, jacobian, target)[0]
+            - partial_difference(task, other, jacobian, target)[0]
+            for one, other in zip(ahead, behind, strict=True)
+        ]
+        slopes = -np.transpose(moved) / (2.0 * step)
+        np.testing.assert_allclose(matrix, slopes, atol=2e-8, err_msg=str(coordinates))
 
 
 @pytest.mark.req("TRF-21")

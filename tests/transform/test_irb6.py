@@ -20,6 +20,7 @@ from irlx.transform.qp.proxqp import ProxQpSolver
 from irlx.transform.step_bounds import BoundSource, StepBounds
 from irlx.transform.tick import TickSolver, TickStatus
 from irlx.transform.tick_problem import TickProblem
+from long_run import first
 
 pytestmark = pytest.mark.req("TRF-21")
 
@@ -83,10 +84,11 @@ def test_link_lengths_of_the_cell(tmp_path) -> None:
             np.testing.assert_allclose(found, due, atol=1e-15)
 
 
-def test_a_thousand_steps_in_closed_form(arm) -> None:
+@pytest.mark.parametrize("count", first(1, [200, STEPS]))
+def test_steps_in_closed_form(arm, count: int) -> None:
     """Displacement and turn of the tool against five joint steps, terms of second order taken off."""
     rng, worst = np.random.default_rng(3), 0.0
-    for q in postures(4, STEPS):
+    for q in postures(4, count):
         moved, turned = 1e-6 * rng.normal(size=(2, 3))
         rotation, position = pose(q)
         ends = []
@@ -101,7 +103,8 @@ def test_a_thousand_steps_in_closed_form(arm) -> None:
     assert worst < 1e-8
 
 
-def test_a_thousand_poses_along_paths(arm) -> None:
+@pytest.mark.parametrize("count", first(1, [200, STEPS]))
+def test_poses_along_paths(arm, count: int) -> None:
     """From pose to pose along curves of the joints: where the inverse on paper is, to rounding."""
     worst = 0.0
     for seed in range(5):
@@ -109,7 +112,7 @@ def test_a_thousand_poses_along_paths(arm) -> None:
         begin[4], end[4] = np.radians([-100.0, 100.0])
         # Past both sides of the tool and over its middle.
         q = begin
-        for share in np.linspace(0.0, 1.0, STEPS // 5):
+        for share in np.linspace(0.0, 1.0, count // 5):
             wanted = begin + share * (end - begin) + 0.05 * np.sin(7.0 * share + np.arange(5.0))
             rotation, position = pose(wanted)
             found = solved(arm, q, rotation, position)

@@ -228,9 +228,8 @@ def test_a_guess_of_the_dual_solver_decides_nothing(kind: str) -> None:
                 float(np.max(np.abs(cold.z))),
                 float(np.max(np.abs(upper - lower), initial=0.0, where=np.isfinite(upper - lower))),
             )
-            np.testing.assert_allclose(
-                warm.z, cold.z, atol=1e-8 * max(size, 1e-12), err_msg=f"{seed}, {guess}"
-            )
+            apart = np.abs(warm.z - cold.z) - 1e-8 * max(size, 1e-12) - 1e-7 * np.abs(cold.z)
+            assert np.max(apart) <= 0.0, f"{seed}, {guess}"
             assert_optimal(rows, lower, upper, warm, f"{kind} {seed} {guess}")
 
 

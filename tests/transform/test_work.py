@@ -128,10 +128,10 @@ def test_quick_bounds_are_those_with_sources(dt: float) -> None:
         q = np.clip(rng.normal(size=n) * rng.choice([0.1, 1.0]), -position, position)
         speed = rng.uniform(-1.0, 1.0, n) * np.minimum(np.min(speeds, axis=0), 3.0)
         quick, full = limiter.bounds(q, speed), limiter.bounds_with_sources(q, speed)
-        np.testing.assert_array_equal(quick.lower, full.lower)
-        np.testing.assert_array_equal(quick.upper, full.upper)
-        np.testing.assert_array_equal(quick.lower_source, full.lower_source)
-        np.testing.assert_array_equal(quick.upper_source, full.upper_source)
+        assert np.array_equal(quick.lower, full.lower)
+        assert np.array_equal(quick.upper, full.upper)
+        assert np.array_equal(quick.lower_source, full.lower_source)
+        assert np.array_equal(quick.upper_source, full.upper_source)
 
 
 class Careless:
