@@ -140,7 +140,8 @@ class Case:
         start = ", ".join(map(repr, np.degrees(self.start).tolist()))
         (folder / "drawn.toml").write_text(
             f'[robot]\nmodel = "{name}"\nstart = [{start}]\n'
-            f"[robot.limits]\n{self.limits}[motion]\ntick_ms = {self.tick!r}\n",
+            f"[robot.limits]\n{self.limits}[robot.self_collision]\nactive = false\n"
+            f"[motion]\ntick_ms = {self.tick!r}\n",
             encoding="utf-8",
         )
         return program

@@ -90,9 +90,12 @@ def test_the_slow_platform_makes_the_tool_slow_and_nothing_else() -> None:
     assert run.summary.path_position_error <= 1e-9
 
 
+UNWATCHED = "[robot.self_collision]\nactive = false\n[motion]\ntick_ms = 50\n"
+
+
 def shares(folder: Path, model: str, weights: str, way: str, slides: int) -> float:
     """Way of the platform or carriage by the way of the tool."""
-    (folder / "p.toml").write_text(f'[robot]\nmodel = "{model}"\n{weights}\n[motion]\ntick_ms = 50\n')
+    (folder / "p.toml").write_text(f'[robot]\nmodel = "{model}"\n{weights}\n{UNWATCHED}')
     (folder / "p.irl").write_text(f"PROGRAM p;\nBEGIN\n  MOVE_INC LIN POSITION({way});\nENDPROGRAM\n")
     run = irlx.run(folder / "p.irl")
     away = run.q[-1] - run.q[0]

@@ -172,7 +172,9 @@ def wrist(folder: Path, tick: float, limits: str = "") -> tuple[irlx.Run, Writte
     start = ", ".join(repr(float(value)) for value in np.degrees(WRIST_START))
     head = f'[robot]\nmodel = "panda"\nstart = [{start}]\n'
     cell.write_text(
-        f"{head}[robot.limits]\n{limits}\n[motion]\ntick_ms = {tick}\n{WRIST_LAW}", encoding="utf-8"
+        f"{head}[robot.limits]\n{limits}\n[robot.self_collision]\nactive = false\n"
+        f"[motion]\ntick_ms = {tick}\n{WRIST_LAW}",
+        encoding="utf-8",
     )
     position, rotation = wrist_start(cell)
     end = position + rotation.apply([0.0, 0.0, WRIST_WAY])

@@ -30,11 +30,14 @@ locked = { rail_joint = 150 }
 start = [8, 25, 15, 10, 45, -8]
 [robot.limits]
 acceleration = [400, 400, 500, 900, 900, 1200]
+[robot.self_collision]
+active = false
 [motion]
 tick_ms = 40
 speed = 200
 acc = 1000
 """
+"""Distances of links are looked at in the programs of the folder."""
 TURN = "WITH TOLERANCE (0, 0, 0, 0, 0, 360)"
 SIDES = ((0, 150, 0), (0, 0, -150), (0, -150, 0), (0, 0, 150))
 BAND = 1e-9

@@ -145,6 +145,8 @@ def test_both_arms_come_home() -> None:
 SHARED = """[robot]
 model = "dual14"
 weights = [%s]
+[robot.self_collision]
+active = false
 [motion]
 tick_ms = 20
 speed = 50

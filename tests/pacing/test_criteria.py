@@ -26,6 +26,8 @@ CELL = """[robot]
 model = "{model}"
 [robot.limits]
 acceleration = {acceleration}
+[robot.self_collision]
+active = false
 [motion]
 tick_ms = {tick}
 speed = 200

@@ -24,6 +24,8 @@ ENDPROGRAM;
 CELL = """
 [robot]
 model = "arm7"
+[robot.self_collision]
+active = false
 [motion]
 tick_ms = {tick}
 [[obstacle]]

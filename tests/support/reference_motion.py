@@ -88,7 +88,8 @@ def reference_motion(
     limits += _limits(bare, "position", position or {}) + _limits(bare, "speed", speed or {})
     limits += "acceleration = false\n" if acceleration is False else _limits(bare, "acceleration", numbers)
     motion = f"[motion]\ntick_ms = {tick_ms!r}\nspeed = {SPEED * 1e3!r}\nacc = {ACCELERATION * 1e3!r}\n"
-    cell.write_text(head + limits + motion, encoding="utf-8")
+    links = "[robot.self_collision]\nactive = false\n"
+    cell.write_text(head + limits + links + motion, encoding="utf-8")
     return _with_program(folder / f"{robot}.irl", cell, bare)
 
 
