@@ -72,7 +72,7 @@ def truth(rng, depth):
 
 @pytest.mark.req("LANG-11")
 @pytest.mark.req("LANG-30")
-@pytest.mark.parametrize("seed", first(3, range(10)))
+@pytest.mark.parametrize("seed", first(2, range(10)))
 def test_everything_happens_once_and_in_order(final, seed):
     rng = random.Random(seed)
     for _ in range(40):

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from long_run import first
+
 pytestmark = pytest.mark.req("MOT-20")
 
 
@@ -24,8 +26,9 @@ def test_ptp_to_a_pose_that_puts_a_joint_on_its_limit(kit) -> None:
         assert rows.q[-1, 0] == shop.limits.position_upper[0], f"seed {seed}"
 
 
-def test_line_that_puts_a_joint_on_its_limit_within_one_tick(kit) -> None:
-    for seed in range(100):
+@pytest.mark.parametrize("seeds", first(1, [range(40), range(40, 100)]), ids=str)
+def test_line_that_puts_a_joint_on_its_limit_within_one_tick(kit, seeds: range) -> None:
+    for seed in seeds:
         shop, position = meeting_the_limit(kit, seed, 0.05)
         rows = shop.line(position + np.array([0.3, 0.0, 0.0]), speed=1.0, acc=9.0)
         assert np.max(rows.q[:, 0]) == shop.limits.position_upper[0], f"seed {seed}"

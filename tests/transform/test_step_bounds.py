@@ -149,7 +149,7 @@ def test_largest_steps_towards_a_limit_never_run_out_of_room(wall: str, dt: floa
         wild = rng.random(n) < 0.01
         return np.where(wild, bounds.lower + rng.random(n) * (bounds.upper - bounds.lower), step)
 
-    rows = simulate(limits, dt, start, choose, 1200)
+    rows = simulate(limits, dt, start, choose, 800)
     check(rows, limits, dt, f"dt {dt}")
     arrived = np.any(np.abs(np.abs(rows) - limit) < 1e-15, axis=0)
     assert np.sum(arrived) > n / 4, "few joints met their limit: the test asks too little"
@@ -206,7 +206,7 @@ def fastest_towards(room: float, deceleration: float, dt: float) -> float:
     if not np.isfinite(deceleration) or not np.isfinite(room):
         return np.inf
     low, high = 0.0, room / dt + deceleration * dt
-    for _ in range(200):
+    for _ in range(80):
         middle = 0.5 * (low + high)
         used, speed = 0.0, middle
         while speed > 0.0 and used <= room:
