@@ -1,4 +1,7 @@
-"""docs/reference/plot.md is true: its pictures are drawn by the script, its text is what irlx prints."""
+"""docs/reference/plot.md is true: its pictures are drawn by the script, its commands can be given.
+
+That its text is what irlx prints is asked in `koch/test_plot_page_text.py`, which has the run.
+"""
 
 import ast
 import re
@@ -6,8 +9,7 @@ from pathlib import Path
 
 import pytest
 
-import irlx
-from irlx.cli.main import build_parser, main
+from irlx.cli.main import build_parser
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = (ROOT / "docs" / "reference" / "plot.md").read_text(encoding="utf-8")
@@ -27,15 +29,6 @@ def test_pictures_are_those_of_the_script():
     assert sorted(shown) == sorted(drawn)
     for name in shown:
         assert len((PICTURES / f"{name}.png").read_bytes()) < 200_000
-
-
-def test_text_of_the_terminal(tmp_path, monkeypatch, capsys):
-    run = irlx.run(ROOT / "programs" / "koch" / "square_cyclic.irl")
-    monkeypatch.chdir(tmp_path)
-    run.save("square_cyclic.irdata")
-    command, *lines = re.search(r"^```text\n(.*?)^```", PAGE, re.MULTILINE | re.DOTALL)[1].splitlines()
-    assert main(command.split()[2:]) == 0
-    assert capsys.readouterr().out.splitlines() == lines
 
 
 def test_commands_and_options_of_the_page():

@@ -157,6 +157,7 @@ def test_a_governed_reference_is_never_far(arm, away: float, seeds: range) -> No
 
 
 @pytest.mark.req("TRF-05")
+@pytest.mark.parametrize("arm", first(1, ["arm7", "koch11"]), indirect=True)
 @pytest.mark.parametrize("away", [1.0, *(pytest.param(way, marks=pytest.mark.slow) for way in (2.0, 3.0))])
 @pytest.mark.parametrize("seeds", SEEDS, ids=str)
 def test_a_whole_return_ends_in_the_best_posture(arm, away: float, seeds: range) -> None:
@@ -232,8 +233,8 @@ def test_the_way_is_kept_at_any_tick(request, name: str, away: float, seed: int,
         ("arm7", 0),
         ("arm7", 1),
         ("koch11", 1),
-        ("koch11", 2),
-        ("koch11", 0),
+        pytest.param("koch11", 2, marks=pytest.mark.slow),
+        pytest.param("koch11", 0, marks=pytest.mark.slow),
     ],
 )
 def test_a_walk_towards_a_far_reference_does_not_chatter(request, name: str, seed: int) -> None:
