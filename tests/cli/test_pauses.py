@@ -12,6 +12,7 @@ import irlx
 from irlx.blocks import PauseBlock
 from irlx.blocks.codec import block_from_plain, block_to_plain
 from irlx.streams import read_stream
+from kept_runs import kept_run
 
 pytestmark = pytest.mark.req("LANG-40")
 
@@ -45,7 +46,7 @@ def rows_of(stream, block):
 
 
 def failed(stream, path):
-    run = replace(irlx.run(path), stream=stream)
+    run = replace(kept_run(path, path.with_suffix(".toml")), stream=stream)
     return {check.name for check in irlx.verify(run, path).failed}
 
 
@@ -54,7 +55,7 @@ def failed(stream, path):
 )
 def test_a_pause_lasts_as_long_as_given(path, seconds, ticks):
     """Whole ticks, rounded up, beside what is rounding; the rest of the stream is that of a run without."""
-    run, plain = irlx.run(path, pause_s=seconds), irlx.run(path)
+    run, plain = irlx.run(path, pause_s=seconds), kept_run(path, path.with_suffix(".toml"))
     assert [len(rows_of(run.stream, record.block)) for record in pauses(run.stream)] == [ticks] * 3
     stands = np.isin(run.block, [record.block.id for record in pauses(run.stream)])
     np.testing.assert_array_equal(run.q[~stands], plain.q)

@@ -174,7 +174,7 @@ def test_the_elbow_makes_room_for_a_ball_that_is_seen_coming(tmp_path, tick):
     assert report.ticks == report.placements == len(found.q) - (report.ticks < len(found.q))
     assert not [one for one in found.stream.warnings if one.code == "IRL587"]
     # Without OBSTACLE the ball would run into the arm.
-    plain = followed(files(tmp_path, heedless(LINE), tick), coming(0.15))
+    plain = followed(files(tmp_path, heedless(LINE), 2 * tick), coming(0.15))
     assert np.min(distances(plain)) < -0.05
 
 

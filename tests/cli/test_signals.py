@@ -322,7 +322,7 @@ def test_waits_that_are_none_fail(tmp_path: Path) -> None:
 @pytest.mark.req("STR-03")
 @pytest.mark.parametrize("ending", [".irdata", ".npz", ".jsonl"])
 def test_signals_survive_a_file(tmp_path: Path, ending: str) -> None:
-    run = ran(tmp_path, TENDING, "part = [[1, true]]\nAIN_1 = [[0, 3]]\nready = [[20, true]]\n")
+    run = ran(tmp_path, TENDING, "part = [[1, true]]\nAIN_1 = [[0, 3]]\nready = [[8, true]]\n")
     run.save(tmp_path / f"s{ending}")
     assert read_stream(tmp_path / f"s{ending}").records == run.stream.records
     report = irlx.verify(tmp_path / f"s{ending}", program=tmp_path / "p.irl", cell=tmp_path / "p.toml")
@@ -332,7 +332,7 @@ def test_signals_survive_a_file(tmp_path: Path, ending: str) -> None:
 
 
 def test_streaming_gives_the_same(tmp_path: Path) -> None:
-    traces = "part = [[1, true]]\nAIN_1 = [[0, 3]]\nready = [[20, true]]\n"
+    traces = "part = [[1, true]]\nAIN_1 = [[0, 3]]\nready = [[8, true]]\n"
     run = ran(tmp_path, TENDING, traces)
     samples = list(irlx.stream(tmp_path / "p.irl"))
     np.testing.assert_array_equal(np.array([s.q for s in samples]), run.q)
