@@ -62,8 +62,12 @@ def test_it_is_off_unless_asked_for(slow) -> None:
     assert [one.code for one in irlx.check(slow)] == ["IRL205"]
 
 
-def test_the_command_line_finds_the_same(slow, found, capsys) -> None:
-    assert main(["check", str(slow), "--motion", "--format", "json"]) == 1
+def test_the_command_line_finds_the_same(tmp_path, capsys) -> None:
+    (tmp_path / "t.toml").write_text('[robot]\nmodel = "arm7"\n')
+    (tmp_path / "t.irl").write_text(PLACES.format(move="LIN", first=700, last=1))
+    found = irlx.check(tmp_path / "t.irl", motion=True)
+    assert [one.code for one in found if one.is_error] == ["IRL520"]
+    assert main(["check", str(tmp_path / "t.irl"), "--motion", "--format", "json"]) == 1
     told = json.loads(capsys.readouterr().out)
     assert [(one["line"], one["code"]) for one in told] == [
         (one.place.line, one.code) for one in found if one.place is not None
@@ -150,9 +154,9 @@ ENDPROGRAM;
 
 @pytest.mark.parametrize(("move", "code"), [("PTP", "IRL522"), ("LIN", "IRL520")])
 def test_which_targets_of_a_line_cannot_be_reached(tmp_path, move, code) -> None:
-    """The wrist comes 0.76 m from the shoulder: of 400, 500, .. 900 mm the last two are too far."""
+    """The wrist comes 0.76 m from the shoulder: of 600, 700, 800 and 900 mm the last two are too far."""
     (tmp_path / "t.toml").write_text('[robot]\nmodel = "arm7"\n')
-    (tmp_path / "t.irl").write_text(PLACES.format(move=move, first=400, last=5))
+    (tmp_path / "t.irl").write_text(PLACES.format(move=move, first=600, last=3))
     found = [one for one in irlx.check(tmp_path / "t.irl", motion=True) if one.is_error]
     assert [(one.code, one.place.line) for one in found if one.place] == [(code, 5)]
     (one,) = found
