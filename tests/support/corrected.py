@@ -134,13 +134,13 @@ def _goes_with_program(found: Corrected, tools: tuple[np.ndarray, np.ndarray], j
     blocks = np.array([0] + [one.block.id for one in executed for _ in one.rows.q])
     places, turns = _poses(job, base, blocks, by_block)
     at, held, chosen = 0, 0, [0]
+    corrections = Rotation.from_rotvec(found.correction[:, 3:]).as_matrix()
     for k in range(1, len(found.q)):
-        turn = Rotation.from_rotvec(found.correction[k, 3:]).as_matrix()
 
-        def off(b: int, k: int = k, turn: np.ndarray = turn) -> float:
+        def off(b: int, k: int = k) -> float:
             place = places[b] + turns[b] @ found.correction[k, :3]
-            angle = Rotation.from_matrix(tools[1][k].T @ turns[b] @ turn).magnitude()
-            return max(float(np.linalg.norm(place - tools[0][k])), float(angle))
+            turned = _angle(tools[1][k], turns[b] @ corrections[k])
+            return max(float(np.linalg.norm(place - tools[0][k])), turned)
 
         if at + 1 < len(base) and blocks[at + 1] == found.block[k] and off(at + 1) <= POSE:
             at += 1
@@ -151,3 +151,8 @@ def _goes_with_program(found: Corrected, tools: tuple[np.ndarray, np.ndarray], j
     assert at == len(base) - 1
     assert held == found.report.held_ticks
     found.planned = base[chosen]
+
+
+def _angle(one: np.ndarray, other: np.ndarray) -> float:
+    """Between two rotations (3, 3), rad: their Frobenius distance is 2 sqrt(2) sin(angle / 2)."""
+    return 2.0 * float(np.arcsin(min(1.0, float(np.linalg.norm(one - other)) / np.sqrt(8.0))))
