@@ -248,7 +248,7 @@ def test_random_expressions(judge, seed, sane):
 
 
 @pytest.mark.parametrize("type", list(WAYS))
-@pytest.mark.parametrize("count", [12, pytest.param(250, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [8, pytest.param(250, marks=pytest.mark.slow)])
 def test_what_is_well_typed_by_the_tables_is_for_the_check(judge, type, count):
     """The tables above are a second account of the language: nothing they build is called wrong."""
     expressions = Written(type, 1.0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, fields
 from enum import Enum
 from functools import cached_property
 from math import inf
@@ -207,13 +207,7 @@ class RobotDescription:
     @cached_property
     def fingerprint(self) -> str:
         """SHA-256 (hex) of the chains' geometry and task: two robots that move alike have the same one."""
-        chain = [
-            {**asdict(joint), "lower": None, "upper": None, "speed": None, "kind": joint.kind.value}
-            for joint in self.chains
-        ]
-        for joint in chain:
-            if joint["mimic"] is None:
-                del joint["mimic"]
+        chain = [_geometry(joint) for joint in self.chains]
         locked = {joint.name: self.locked[joint.name] for joint in self.chains if joint.name in self.locked}
         told: dict[str, object] = {"tip": self.tip, "chain": chain, "locked": locked}
         if self.coordinates != COORDINATES:
@@ -224,3 +218,10 @@ class RobotDescription:
             told["free"] = self.free
         text = json.dumps(told, sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _geometry(joint: Joint) -> dict[str, object]:
+    """What a joint has a part in how a robot moves, in plain words; limits are told as unknown."""
+    plain = {one.name: getattr(joint, one.name) for one in fields(joint) if one.name != "mimic"}
+    plain |= {"lower": None, "upper": None, "speed": None, "kind": joint.kind.value}
+    return plain if joint.mimic is None else {**plain, "mimic": asdict(joint.mimic)}

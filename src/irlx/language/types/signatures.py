@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 
 from irlx.language.types.model import BOOL, CHAR, FILE, INT, REAL, STRING, UNKNOWN, Type
 from irlx.language.types.predefined import ORIENTATION, POSE, POSITION
@@ -49,12 +50,9 @@ def _signature(
 _OBSTACLE = Parameter("", (UNKNOWN,), names_obstacle=True)
 
 
-def built_in_functions(types: Mapping[str, Type]) -> dict[str, Signature]:
-    """Signatures of the built-in functions by casefolded name; `types` are those of the program.
-
-    Constructors named like their type are not among them: they take the fields of the type.
-    """
-    main, postures = types["main_joint"], (types["main_joint"], types["joint"])
+@cache
+def _of_any_robot() -> Mapping[str, Signature]:
+    """The functions that take and give the same whatever the robot."""
     places = (POSE, POSITION)
     found = [
         *(_signature(name, REAL, REAL) for name in _ANGLES.split()),
@@ -84,6 +82,18 @@ def built_in_functions(types: Mapping[str, Type]) -> dict[str, Signature]:
         _signature("CHR", CHAR, INT),
         _signature("LEN", INT, STRING),
         _signature("DISTANCE", REAL, places, places),
+    ]
+    return {signature.name.casefold(): signature for signature in found}
+
+
+def built_in_functions(types: Mapping[str, Type]) -> dict[str, Signature]:
+    """Signatures of the built-in functions by casefolded name; `types` are those of the program.
+
+    Constructors named like their type are not among them: they take the fields of the type.
+    """
+    main, postures = types["main_joint"], (types["main_joint"], types["joint"])
+    places = (POSE, POSITION)
+    found = [
         _signature("FK", POSE, postures),
         _signature("IK", main, places, postures),
         _signature("MANIPULABILITY", REAL, postures),
@@ -91,4 +101,4 @@ def built_in_functions(types: Mapping[str, Type]) -> dict[str, Signature]:
         Signature("POSTURE", (Parameter("", places), _OBSTACLE), main, 1),
         Signature("EOF", (Parameter("", (FILE,), by_reference=True),), BOOL, 0),
     ]
-    return {signature.name.casefold(): signature for signature in found}
+    return {**_of_any_robot(), **{signature.name.casefold(): signature for signature in found}}
