@@ -135,31 +135,44 @@ HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
 """Gives pages a graphics card that takes everything and draws nothing."""
 
 
-def new_tab(browser, scripts):
-    """A page in a context of its own, which runs scripts before what it opens."""
-    page = browser.new_context().new_page()
-    for script in scripts:
-        page.add_init_script(script)
-    return page
+@pytest.fixture(scope="session")
+def tab(browser, tmp_path_factory):
+    """`with tab(*scripts) as page`: a tab whose pages run the scripts before their own.
 
+    Tabs are used again, each one more costs a process; so does the way from a file to an address of another
+    kind and back, wherefore what a tab shows between two pages is a file as well.
+    """
+    empty = tmp_path_factory.mktemp("empty") / "empty.html"
+    empty.write_text("", encoding="utf-8")
+    free = []
 
-@pytest.fixture
-def undrawn_tab(browser):
-    """An empty tab of its own, whose pages draw no scene."""
-    page = new_tab(browser, [UNDRAWN])
-    yield page
-    page.context.close()
+    @contextmanager
+    def given(*scripts: str):
+        if free:
+            page, session = free.pop()
+        else:
+            page = browser.new_context().new_page()
+            session = page.context.new_cdp_session(page)
+            session.send("Page.enable")
+        known = [
+            session.send("Page.addScriptToEvaluateOnNewDocument", {"source": script}) for script in scripts
+        ]
+        yield page
+        for script in known:
+            session.send("Page.removeScriptToEvaluateOnNewDocument", script)
+        page.goto(empty.as_uri())
+        free.append((page, session))
+
+    return given
 
 
 @pytest.fixture(scope="session")
-def open_page(browser):
+def open_page(tab):
     """`open_page(path, width=, height=, scheme=, still=, before=, where=, drawn=)`: the page of a file.
 
-    Ready, and paused but for `still=False`. Tabs that run the same scripts `before` the page are used
-    again, each one more costs a process. Not `drawn` are pages of which nobody looks at the scene: to draw
-    without a graphics card takes most of the time.
+    Ready, and paused but for `still=False`; a script `before` it is run before its own. Not `drawn` are pages
+    of which nobody looks at the scene: to draw without a graphics card takes most of the time.
     """
-    free = {}
 
     @contextmanager
     def opened(
@@ -172,20 +185,16 @@ def open_page(browser):
         where="#t=0",
         drawn=True,
     ) -> Iterator[Opened]:
-        scripts = tuple(script for script in (before, None if drawn else UNDRAWN) if script)
-        tabs = free.setdefault(scripts, [])
-        page = tabs.pop() if tabs else new_tab(browser, scripts)
-        page.set_viewport_size({"width": width, "height": height})
-        page.emulate_media(color_scheme=scheme, reduced_motion="reduce" if still else "no-preference")
-        shown = Opened(page)
-        page.goto(path.as_uri() + where)
-        page.evaluate("() => window.irlx.ready.then(() => true)")
-        shown.settle()
-        yield shown
-        page.evaluate("() => localStorage.clear()")
-        page.goto("about:blank")
-        shown.leave()
-        tabs.append(page)
+        with tab(*(script for script in (before, None if drawn else UNDRAWN) if script)) as page:
+            page.set_viewport_size({"width": width, "height": height})
+            page.emulate_media(color_scheme=scheme, reduced_motion="reduce" if still else "no-preference")
+            shown = Opened(page)
+            page.goto(path.as_uri() + where)
+            page.evaluate("() => window.irlx.ready.then(() => true)")
+            shown.settle()
+            yield shown
+            page.evaluate("() => localStorage.clear()")
+            shown.leave()
         assert shown.complaints == []
 
     return opened

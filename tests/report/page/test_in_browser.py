@@ -10,7 +10,6 @@ DARKER = 60
 
 
 def test_small_variant(made, open_page):
-    """First of all that draw, so that `shown` finds its tab: each costs a renderer and the shaders."""
     with open_page(made(small=True), width=700, height=420) as page:
         assert not page.page.locator("#program").is_visible()
         assert page.page.locator(".plot:visible").count() == 1
@@ -21,74 +20,21 @@ def test_small_variant(made, open_page):
         assert page.run("() => document.documentElement.scrollHeight") <= 420
 
 
-@pytest.fixture(scope="module")
-def shown(made, open_page):
-    """The page made by hand, opened once for tests that leave it as it is but for the frame."""
-    with open_page(made()) as page:
-        yield page
-
-
-@pytest.mark.req("REP-04")
-def test_the_slider_moves_the_tool(shown):
-    truth = tool_poses()
-    for frame in (0, 1, 49, 50, 73, FRAMES - 1):
-        shown.seek(frame)
-        assert shown.run("() => irlx.frame") == frame
-        pose = np.array(shown.run("() => irlx.toolPose()"))
-        assert np.abs(pose[:3] - truth[frame, :3]).max() < 1e-12
-        assert min(np.abs(pose[3:] - sign * truth[frame, 3:]).max() for sign in (1, -1)) < 1e-12
-
-
-def test_the_scene_is_drawn_and_moves(shown):
-    pictures = []
-    for frame in (0, FRAMES - 1, 0):
-        shown.seek(frame)
-        pictures.append(shown.colours("#scene > canvas"))
-    assert pictures[0]["different"] > 500
-    assert pictures[0]["hash"] != pictures[1]["hash"]
-    assert pictures[0]["hash"] == pictures[2]["hash"]
-
-
-def test_paused_it_draws_nothing(shown):
-    shown.run(
-        """() => {
-            window.drawn = 0;
-            const ask = window.requestAnimationFrame;
-            window.requestAnimationFrame = call => ask(time => { window.drawn += 1; call(time); });
-        }"""
-    )
-    shown.page.wait_for_timeout(300)
-    assert shown.run("() => window.drawn") <= 2
-
-
-@pytest.mark.req("REP-04")
-def test_the_line_in_execution_is_lit(shown):
-    for frame, line in ((0, None), (10, "5"), (51, "6")):
-        shown.seek(frame)
-        lit = shown.page.locator("#program .lit")
-        assert lit.count() == (line is not None)
-        if line is not None:
-            assert lit.get_attribute("data-line") == line
-    shown.page.locator("#program li[data-line='5'] code").click()
-    assert shown.run("() => irlx.frame") == 1
-    assert "<b>a comment</b>" in shown.page.locator("#program").inner_text()
-    assert "alert(1)" in shown.page.locator("#program .string").inner_text()
-
-
-def test_events_and_joints(shown):
-    shown.page.get_by_role("tab", name="Events 4").click()
-    assert shown.page.locator(".events li").count() == 4
-    shown.page.locator(".events li", has_text="upper position").get_by_role("button").click()
-    assert shown.run("() => irlx.frame") == 60
-    assert "</script><b>written</b>" in shown.page.locator(".events").inner_text()
-    assert "null" not in shown.page.locator("#events").inner_text()
-    held = shown.page.locator("#joints .held")
-    assert held.count() == 1
-    assert held.inner_text().split() == ["stretch", "300.0", "mm"]
-    assert "stretch at its upper position limit" in shown.page.locator("#status").inner_text()
-    shown.seek(59)
-    assert shown.page.locator("#joints .held").count() == 0
-    shown.page.get_by_role("tab", name="Program").click()
+def test_the_scene_is_drawn_and_moves_and_is_light_and_dark_too(made, open_page):
+    with open_page(made(), width=700, height=420) as page:
+        pictures = []
+        for frame in (0, FRAMES - 1, 0):
+            page.seek(frame)
+            pictures.append(page.colours("#scene > canvas"))
+        assert pictures[0]["different"] > 500
+        assert pictures[0]["hash"] != pictures[1]["hash"]
+        assert pictures[0]["hash"] == pictures[2]["hash"]
+        page.page.keyboard.press("t")
+        assert page.run("() => document.documentElement.dataset.theme") == "dark"
+        dark = np.array(page.colours("#scene > canvas")["mean"])
+        page.page.keyboard.press("t")
+        assert page.run("() => document.documentElement.dataset.theme") == "light"
+        assert (np.array(page.colours("#scene > canvas")["mean"]) - dark).min() > DARKER
 
 
 def test_keys(made, open_page):
@@ -144,28 +90,6 @@ def test_playing_ends_and_loops(made, open_page):
         assert page.page.get_by_role("button", name="Pause").is_visible()
 
 
-def test_curves_seek(shown):
-    over = shown.page.locator("[data-plot=position] .u-over")
-    box = over.bounding_box()
-    shown.page.mouse.click(box["x"] + box["width"] / 4, box["y"] + box["height"] / 2)
-    assert abs(shown.run("() => irlx.frame") - 25) <= 1
-    shown.page.mouse.down()
-    shown.page.mouse.move(box["x"] + box["width"] * 0.7, box["y"] + box["height"] / 2)
-    shown.page.mouse.up()
-    assert abs(shown.run("() => irlx.frame") - 70) <= 1
-    shown.page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
-    shown.page.keyboard.down("Control")
-    shown.page.mouse.wheel(0, -300)
-    shown.page.keyboard.up("Control")
-    shown.page.mouse.click(box["x"] + 1, box["y"] + box["height"] / 2)
-    assert shown.run("() => irlx.frame") == pytest.approx(50 - 50 / np.e, abs=2)
-    shown.page.mouse.dblclick(box["x"] + 1, box["y"] + box["height"] / 2)
-    shown.page.mouse.click(box["x"] + 1, box["y"] + box["height"] / 2)
-    assert shown.run("() => irlx.frame") == 0
-    plots = shown.page.locator(".plot").evaluate_all("all => all.map(plot => plot.dataset.plot)")
-    assert plots == ["position", "speed", "path", "clearance", "singular"]
-
-
 def test_light_and_dark(made, open_page):
     means = {}
     for scheme in ("light", "dark"):
@@ -173,16 +97,6 @@ def test_light_and_dark(made, open_page):
             assert page.run("() => document.documentElement.dataset.theme") == scheme
             means[scheme] = np.array(page.colours("body")["mean"])
     assert (means["light"] - means["dark"]).min() > DARKER
-
-
-def test_the_scene_is_light_and_dark_too(shown):
-    means = []
-    for theme in ("dark", "light"):
-        shown.page.keyboard.press("t")
-        assert shown.run("() => document.documentElement.dataset.theme") == theme
-        shown.settle()
-        means.append(np.array(shown.colours("#scene > canvas")["mean"]))
-    assert (means[1] - means[0]).min() > DARKER
 
 
 @pytest.mark.parametrize(
@@ -258,8 +172,92 @@ def test_the_time_of_the_address_goes_with_it(made, open_page):
         assert page.run("() => irlx.frame") == 51
 
 
-def test_data_of_another_version_is_refused_in_words(made, browser):
-    page = browser.new_page()
-    page.goto(made(format="irlx page 9").as_uri())
-    assert "'irlx page 9'" in page.get_by_role("alert").inner_text()
-    page.close()
+def test_data_of_another_version_is_refused_in_words(made, tab):
+    with tab() as page:
+        page.goto(made(format="irlx page 9").as_uri())
+        assert "'irlx page 9'" in page.get_by_role("alert").inner_text()
+
+
+@pytest.fixture(scope="module")
+def shown(made, open_page):
+    """The page made by hand, opened once for tests that leave it as it is but for the frame.
+
+    They come last, so that the others find its tab.
+    """
+    with open_page(made(), drawn=False) as page:
+        yield page
+
+
+@pytest.mark.req("REP-04")
+def test_the_slider_moves_the_tool(shown):
+    truth = tool_poses()
+    for frame in (0, 1, 49, 50, 73, FRAMES - 1):
+        shown.seek(frame)
+        assert shown.run("() => irlx.frame") == frame
+        pose = np.array(shown.run("() => irlx.toolPose()"))
+        assert np.abs(pose[:3] - truth[frame, :3]).max() < 1e-12
+        assert min(np.abs(pose[3:] - sign * truth[frame, 3:]).max() for sign in (1, -1)) < 1e-12
+
+
+def test_paused_it_draws_nothing(shown):
+    shown.run(
+        """() => {
+            window.drawn = 0;
+            const ask = window.requestAnimationFrame;
+            window.requestAnimationFrame = call => ask(time => { window.drawn += 1; call(time); });
+        }"""
+    )
+    shown.page.wait_for_timeout(300)
+    assert shown.run("() => window.drawn") <= 2
+
+
+@pytest.mark.req("REP-04")
+def test_the_line_in_execution_is_lit(shown):
+    for frame, line in ((0, None), (10, "5"), (51, "6")):
+        shown.seek(frame)
+        lit = shown.page.locator("#program .lit")
+        assert lit.count() == (line is not None)
+        if line is not None:
+            assert lit.get_attribute("data-line") == line
+    shown.page.locator("#program li[data-line='5'] code").click()
+    assert shown.run("() => irlx.frame") == 1
+    assert "<b>a comment</b>" in shown.page.locator("#program").inner_text()
+    assert "alert(1)" in shown.page.locator("#program .string").inner_text()
+
+
+def test_events_and_joints(shown):
+    shown.page.get_by_role("tab", name="Events 4").click()
+    assert shown.page.locator(".events li").count() == 4
+    shown.page.locator(".events li", has_text="upper position").get_by_role("button").click()
+    assert shown.run("() => irlx.frame") == 60
+    assert "</script><b>written</b>" in shown.page.locator(".events").inner_text()
+    assert "null" not in shown.page.locator("#events").inner_text()
+    held = shown.page.locator("#joints .held")
+    assert held.count() == 1
+    assert held.inner_text().split() == ["stretch", "300.0", "mm"]
+    assert "stretch at its upper position limit" in shown.page.locator("#status").inner_text()
+    shown.seek(59)
+    assert shown.page.locator("#joints .held").count() == 0
+    shown.page.get_by_role("tab", name="Program").click()
+
+
+def test_curves_seek(shown):
+    over = shown.page.locator("[data-plot=position] .u-over")
+    box = over.bounding_box()
+    shown.page.mouse.click(box["x"] + box["width"] / 4, box["y"] + box["height"] / 2)
+    assert abs(shown.run("() => irlx.frame") - 25) <= 1
+    shown.page.mouse.down()
+    shown.page.mouse.move(box["x"] + box["width"] * 0.7, box["y"] + box["height"] / 2)
+    shown.page.mouse.up()
+    assert abs(shown.run("() => irlx.frame") - 70) <= 1
+    shown.page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    shown.page.keyboard.down("Control")
+    shown.page.mouse.wheel(0, -300)
+    shown.page.keyboard.up("Control")
+    shown.page.mouse.click(box["x"] + 1, box["y"] + box["height"] / 2)
+    assert shown.run("() => irlx.frame") == pytest.approx(50 - 50 / np.e, abs=2)
+    shown.page.mouse.dblclick(box["x"] + 1, box["y"] + box["height"] / 2)
+    shown.page.mouse.click(box["x"] + 1, box["y"] + box["height"] / 2)
+    assert shown.run("() => irlx.frame") == 0
+    plots = shown.page.locator(".plot").evaluate_all("all => all.map(plot => plot.dataset.plot)")
+    assert plots == ["position", "speed", "path", "clearance", "singular"]

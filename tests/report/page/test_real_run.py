@@ -38,16 +38,16 @@ def test_forward_kinematics_of_the_page(run, open_page, tmp_path):
     np.testing.assert_allclose(same, 1.0, atol=1e-12)
 
 
-def test_a_cell_of_a_notebook(run, undrawn_tab, tmp_path):
+def test_a_cell_of_a_notebook(run, tab, tmp_path):
     (tmp_path / "cell.html").write_text(f"<body>{run._repr_html_()}</body>", encoding="utf-8")
-    page = undrawn_tab
     asked = []
-    page.on("request", lambda request: asked.append(request.url))
-    page.goto((tmp_path / "cell.html").as_uri())
-    (frame,) = page.frames[1:]
-    frame.wait_for_function("() => window.irlx !== undefined")
-    assert frame.evaluate("() => irlx.ready.then(() => irlx.frames)") == len(run.t)
-    pose = frame.evaluate("() => irlx.toolPose(irlx.frames - 1)")
+    with tab() as page:
+        page.on("request", lambda request: asked.append(request.url))
+        page.goto((tmp_path / "cell.html").as_uri())
+        (frame,) = page.frames[1:]
+        frame.wait_for_function("() => window.irlx !== undefined")
+        assert frame.evaluate("() => irlx.ready.then(() => irlx.frames)") == len(run.t)
+        pose = frame.evaluate("() => irlx.toolPose(irlx.frames - 1)")
+        assert page.get_by_role("rowheader", name="path error").is_visible()
+        assert [url for url in asked if not url.startswith(("file:", "blob:", "data:", "about:"))] == []
     np.testing.assert_allclose(pose[:3], run.tool[-1, :3], atol=1e-8)
-    assert page.get_by_role("rowheader", name="path error").is_visible()
-    assert [url for url in asked if not url.startswith(("file:", "blob:", "data:", "about:"))] == []
