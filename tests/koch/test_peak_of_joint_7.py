@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from functools import cache
 from itertools import pairwise
-from math import cos, sin
+from math import asin, cos, hypot, sin
 
 import numpy as np
 import pytest
@@ -24,42 +24,58 @@ ANGLES = np.radians([(0, 0, 0), (0, 0, 0), (-85, 0, 0), (0, 85, 0), (0, 0, 0), (
 JOINT_7, JOINT_11 = 6, 10
 
 
-def turn_about(along: int, angle: float) -> np.ndarray:
-    """Rotation matrix (3, 3) of a turn by an angle about the axis x, y or z (0, 1 or 2)."""
-    found = np.eye(3)
-    i, j = (along + 1) % 3, (along + 2) % 3
-    found[i, i] = found[j, j] = cos(angle)
-    found[j, i] = sin(angle)
-    found[i, j] = -found[j, i]
-    return found
+def pose_error(square, q: np.ndarray, target: tuple[np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """Pose difference (6,) in the base frame, and Jacobian (6, 11), of a posture (11,).
 
-
-def pose_error(square, q: np.ndarray, target: tuple[np.ndarray, Rotation]) -> tuple[np.ndarray, np.ndarray]:
-    """Pose difference (6,) of a posture (11,) in the base frame, and its Jacobian (6, 11)."""
-    position, rotation = np.zeros(3), np.eye(3)
+    The target is a position and a rotation matrix, less than a right angle away.
+    """
+    # In plain floats: thousands of chains of eleven small products each.
+    position, columns = (0.0, 0.0, 0.0), [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)]
     places, directions, turns = [], [], []
     for value, axis, offset in zip(q.tolist(), square.axes, square.offsets, strict=True):
-        position = position + rotation @ offset
+        position = moved(position, columns, offset)
         along = "xyz".index(axis[-1])
         sign = -1.0 if axis[-2] == "-" else 1.0
-        direction = sign * rotation[:, along]
         places.append(position)
-        directions.append(direction)
+        directions.append(tuple(sign * part for part in columns[along]))
         turns.append(not axis.startswith("slide"))
         if turns[-1]:
-            rotation = rotation @ turn_about(along, sign * value)
+            columns = turned(columns, along, sign * value)
         else:
-            position = position + direction * value
-    position = position + rotation @ square.tool
+            position = moved(position, [directions[-1]], [value])
+    position = np.array(moved(position, columns, square.tool))
     jacobian = np.zeros((6, 11))
     (x, y, z), (u, v, w) = (position - places).T, np.transpose(directions)
     # A turn moves the tool by the cross product of its axis and the way from there to the tool.
     jacobian[:3] = np.where(turns, (v * z - w * y, w * x - u * z, u * y - v * x), (u, v, w))
     jacobian[3:] = np.where(turns, (u, v, w), 0.0)
-    difference = np.concatenate(
-        [target[0] - position, (target[1] * Rotation.from_matrix(rotation.T)).as_rotvec()]
-    )
-    return difference, jacobian
+    return np.concatenate([target[0] - position, rotation_vector(target[1] @ columns)]), jacobian
+
+
+def moved(position, columns, offset) -> tuple[float, float, float]:
+    """A point moved by an offset along axes (columns of a rotation matrix)."""
+    x, y, z = position
+    for (u, v, w), part in zip(columns, offset, strict=True):
+        if part:
+            x, y, z = x + part * u, y + part * v, z + part * w
+    return x, y, z
+
+
+def turned(columns, along: int, angle: float) -> list[tuple[float, ...]]:
+    """Columns of a rotation matrix, turned about one of them (0, 1 or 2)."""
+    found = list(columns)
+    i, j = (along + 1) % 3, (along + 2) % 3
+    c, s = cos(angle), sin(angle)
+    found[i] = tuple(c * a + s * b for a, b in zip(columns[i], columns[j], strict=True))
+    found[j] = tuple(c * b - s * a for a, b in zip(columns[i], columns[j], strict=True))
+    return found
+
+
+def rotation_vector(matrix: np.ndarray) -> np.ndarray:
+    """Rotation vector (3,) of a rotation matrix of less than a right angle, from its skew part."""
+    (_, b, c), (d, _, f), (g, h, _) = matrix.tolist()
+    sine = 0.5 * hypot(h - f, c - g, d - b)
+    return 0.5 * np.array([h - f, c - g, d - b]) * (asin(sine) / sine if sine else 1.0)
 
 
 def least_step(gradient, jacobian, difference, lower, upper) -> np.ndarray:
@@ -102,16 +118,16 @@ def tick_step(square, q, target, whole: bool) -> np.ndarray:
     return total
 
 
-def targets(square, tick_ms: int, linear: bool) -> list[tuple[np.ndarray, Rotation]]:
+def targets(square, tick_ms: int, linear: bool) -> list[tuple[np.ndarray, np.ndarray]]:
     """Poses of the square without hold ticks, ramps of 0.5 s in every move of 2.5 s."""
     share = square.share_of_way(2500 // tick_ms, 2.0, 1.0, 2.0)
     found = []
     for (place, turn), ((p0, r0), (p1, r1)) in zip(pairwise(ANGLES), pairwise(square.corners), strict=True):
         about = (r0.inv() * r1).as_rotvec()
-        for s in share:
-            angles = (1 - s) * place + s * turn
-            bent = Rotation.from_euler("YZX", angles) if linear else r0 * Rotation.from_rotvec(s * about)
-            found.append(((1 - s) * p0 + s * p1, bent))
+        s = share[:, None]
+        angles = (1 - s) * place + s * turn
+        bent = Rotation.from_euler("YZX", angles) if linear else r0 * Rotation.from_rotvec(s * about)
+        found += zip((1 - s) * p0 + s * p1, bent.as_matrix(), strict=True)
     return found
 
 
@@ -145,8 +161,9 @@ def test_each_tick_of_irlx_is_the_least_step_of_that_tick(experiment, square) ->
     run = experiment("square", 50)
     positions, rotations = square.demanded(50)
     assert peak(run.q, 0.05) == pytest.approx(-412.84, abs=0.05)
+    turns = rotations.as_matrix()
     for k in range(1, len(run.q)):
-        step = tick_step(square, run.q[k - 1], (positions[k], rotations[k]), whole=True)
+        step = tick_step(square, run.q[k - 1], (positions[k], turns[k]), whole=True)
         np.testing.assert_allclose(run.q[k] - run.q[k - 1], step, rtol=0.0, atol=1e-8, err_msg=f"tick {k}")
 
 
