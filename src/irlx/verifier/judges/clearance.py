@@ -19,7 +19,7 @@ from irlx.verifier.clearance.pairs import (
     meetings,
     obstacle_pairs,
 )
-from irlx.verifier.clearance.search import capped_distances, near_rows
+from irlx.verifier.clearance.search import NEAREST_WITHIN, capped_distances, near_rows
 from irlx.verifier.clearance.spans import Spans, obstacle_spans, rows_in
 from irlx.verifier.evidence import Evidence
 from irlx.verifier.findings.finding import FAILED, NO_CASE, NOT_CHECKED, OK, Check
@@ -80,7 +80,10 @@ class ClearanceChecks:
             for meeting in met:
                 beyond = float(np.max(allowed[place - 1] - meeting.least[place], initial=-np.inf))
                 asked.append((beyond, len(asked), pair, meeting, place, allowed[place - 1]))
-        for _, _, pair, meeting, place, allowed in sorted(asked, reverse=True):
+        for beyond, _, pair, meeting, place, allowed in sorted(asked, reverse=True):
+            if beyond <= min(CLEARANCE, self._tally.worst_rank + NEAREST_WITHIN):
+                # No row comes near enough to matter, which most meetings are told by here.
+                continue
             found = near_rows(meeting, place, allowed, CLEARANCE, self._tally.worst_rank)
             due = allowed[np.searchsorted(place, found.rows)]
             slack = np.where(due < pair.margin, STARTED_INSIDE, CLEARANCE)
