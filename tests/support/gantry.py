@@ -154,25 +154,22 @@ class Maker:
         p0, r0 = pose_of(start)
         arm = p0 - np.array([*centre, p0[2]])
 
-        def point(phi: float) -> np.ndarray:
-            return p0 - arm + Rotation.from_rotvec([0.0, 0.0, phi]).apply(arm)
+        def points(phi: np.ndarray) -> np.ndarray:
+            return p0 - arm + Rotation.from_rotvec(np.multiply.outer(phi, [0.0, 0.0, 1.0])).apply(arm)
 
         step = np.zeros(3) if turn is None else np.array(turn, dtype=float)
         goal = None if turn is None else tuple((r0 * Rotation.from_rotvec(step)).as_quat().tolist())
-        target, middle = (
-            PoseTarget(tuple(point(end).tolist()), goal),
-            PoseTarget(tuple(point(via).tolist()), None),
-        )
+        last, between = (tuple(position) for position in points(np.array([end, via])).tolist())
+        target, middle = PoseTarget(last, goal), PoseTarget(between, None)
         more = {"target": target, "course": ArcCourse(middle, angle), "law": LAW, **data}
         number = self.record(MoveBlock, kind=MoveKind.CIRCLE, **more)
         # A negative ANGLE goes against the sense from start over via to end.
         travel = end if angle is None else angle * np.sign(end)
+        s = smooth(ticks)
         rows = np.repeat(start[None], ticks, axis=0)
-        for row, share in zip(rows, smooth(ticks), strict=True):
-            position = point(share * travel)
-            row[1:4] = position - np.array([start[0], 0.0, 0.0])
-            if turn is not None:
-                row[4:7] = (r0 * Rotation.from_rotvec(share * step)).as_euler("ZYX")
+        rows[:, 1:4] = points(s * travel) - np.array([start[0], 0.0, 0.0])
+        if turn is not None:
+            rows[:, 4:7] = (r0 * Rotation.from_rotvec(s[:, None] * step)).as_euler("ZYX")
         self.emit(number, rows)
 
     def switch(self, kind: LimitKind, bound: np.ndarray | None) -> None:

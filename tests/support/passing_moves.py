@@ -15,7 +15,7 @@ from scipy.interpolate import BPoly, CubicSpline, make_interp_spline
 from scipy.spatial.transform import Rotation
 
 Vector = np.ndarray
-FINE = 4001
+FINE = 2001
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ class Table:
 
     def __init__(self, point: Callable[[Vector], Vector], most: float, kinks: Vector | None = None) -> None:
         self.u = np.linspace(0.0, most, FINE)
-        nodes, weights = np.polynomial.legendre.leggauss(6)
+        nodes, weights = np.polynomial.legendre.leggauss(3)
         step = most / (FINE - 1)
         rate = point.derivative()  # type: ignore[attr-defined]
         middle = (self.u[:-1] + step / 2)[:, None] + step / 2 * nodes
@@ -221,10 +221,9 @@ def spline(poses: list[tuple[Vector, Rotation]]) -> tuple[Piece, Vector]:
 
     def pose(s: Vector) -> tuple[Vector, Rotation]:
         number = np.clip(np.searchsorted(at, s, side="right") - 1, 0, len(pieces) - 1)
-        turns = np.array(
-            [turned[k] * Rotation.from_rotvec(pieces[k](w)) for k, w in zip(number, s, strict=True)]
-        )
-        return curve(table.parameter(s)), Rotation.concatenate(list(turns))
+        # Ways are in order, and so are the pieces that they lie on.
+        turns = [turned[k] * Rotation.from_rotvec(pieces[k](s[number == k])) for k in np.unique(number)]
+        return curve(table.parameter(s)), Rotation.concatenate(turns)
 
     return Piece(table.length, pose), at
 

@@ -18,9 +18,10 @@ from irlx.verifier import Reference, remembered, rows, verify_scans, verify_stre
 from irlx.verifier.outline import outline_of
 
 
+@cache
 def busy(kit):
-    """Everything that carries something from row to row: PTP, lines, half turns, arcs of several rounds,
-    switches, clauses, frozen joints, a closed cyclic path, a move that moves nothing."""
+    """Everything that carries something from row to row, made once: PTP, lines, half turns, arcs of several
+    rounds, switches, clauses, frozen joints, a closed cyclic path, a move that moves nothing."""
     maker = kit.Maker(np.array([0.1, 0.2, -0.1, 0.3, 0.2, -0.3, 0.1]))
     maker.ptp(np.array([0.0, 0.5, 0.25, 0.4, 0.3, 0.2, -0.1]))
     maker.record(kit.FreezeBlock, joints=(1,))
@@ -102,9 +103,9 @@ def test_portions_of_any_size_give_the_same_report(size, damage, judged, kit, mo
 def long_stream(kit, rounds: int):
     maker = kit.Maker(np.array([0.1, 0.2, -0.1, 0.3, 0.2, -0.3, 0.1]))
     for _ in range(rounds):
-        maker.lin((0.6, 0.3, 0.3), (0.0, 0.0, 0.1), ticks=2000)
-        maker.circle((0.5, 0.3), 1.0, 2.0, angle=-2 * np.pi, ticks=2000)
-        maker.ptp(np.array([0.1, 0.2, -0.1, 0.3, 0.2, -0.3, 0.1]), ticks=2000)
+        maker.lin((0.6, 0.3, 0.3), (0.0, 0.0, 0.1), ticks=750)
+        maker.circle((0.5, 0.3), 1.0, 2.0, angle=-2 * np.pi, ticks=750)
+        maker.ptp(np.array([0.1, 0.2, -0.1, 0.3, 0.2, -0.3, 0.1]), ticks=750)
     return maker.stream()
 
 
@@ -118,7 +119,7 @@ def test_memory_does_not_grow_with_the_stream(ending, kit, tmp_path, monkeypatch
     monkeypatch.setattr("irlx.streams.scan._PORTION", 512)
     monkeypatch.setattr("irlx.streams.npz_reader._PORTION", 512)
     peaks = []
-    for rounds in (1, 2):
+    for rounds in (2, 4):
         path = tmp_path / f"{rounds}{ending}"
         write_stream(long_stream(kit, rounds), path)
         tracemalloc.start()
@@ -128,7 +129,7 @@ def test_memory_does_not_grow_with_the_stream(ending, kit, tmp_path, monkeypatch
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
         assert report.passed, report
-    # 6,000 rows more are 650 kB of joint values and tool poses alone.
+    # 4,500 rows more are 500 kB of joint values and tool poses alone.
     assert peaks[1] - peaks[0] < 4e5, peaks
 
 
@@ -210,10 +211,12 @@ def test_nothing_of_what_makes_streams_is_loaded(tmp_path):
     import irlx
 
     source = Path(irlx.__file__).parents[1]
-    made = irlx.run(Path(__file__).parents[2] / "programs" / "koch" / "square.irl")
-    made.save(tmp_path / "square.irdata")
+    (tmp_path / "a.toml").write_text('[robot]\nmodel = "rail6"\n[motion]\ntick_ms = 20\n', encoding="utf-8")
+    text = "PROGRAM a;\nBEGIN\n  MOVE_INC LIN (0, 30, -20);\nENDPROGRAM;\n"
+    (tmp_path / "a.irl").write_text(text, encoding="utf-8")
+    irlx.run(tmp_path / "a.irl").save(tmp_path / "a.irdata")
     done = subprocess.run(
-        [sys.executable, "-c", LOADED, str(tmp_path / "square.irdata")],
+        [sys.executable, "-c", LOADED, str(tmp_path / "a.irdata")],
         cwd=tmp_path,
         env={"PYTHONPATH": str(source), "PATH": ""},
         capture_output=True,
