@@ -3,6 +3,7 @@
 import compileall
 import gc
 import os
+import shutil
 import signal
 import sys
 import threading
@@ -20,6 +21,8 @@ SUITE = 5000
 """Tests from which on a run is taken for that of the suite, whose time is watched."""
 LONGEST = 15.0
 """Seconds that the tests of a file may take together: the workers share out whole files."""
+MEMORY, ROOM = Path("/dev/shm"), 4 << 30
+"""Where the files of tests are kept, if so many bytes are free there."""
 GARBAGE = 50_000, 20, 20
 """Objects after which Python looks for garbage, a younger generation each."""
 FIRST = [
@@ -55,6 +58,7 @@ def pytest_configure(config: pytest.Config) -> None:
         # A shell starts its background jobs with interrupts ignored, and children inherit that.
         signal.signal(signal.SIGINT, signal.default_int_handler)
     os.fsync = _asked_to_store
+    _keep_files_in_memory()
     gc.disable()
     # Python may have been told to write no bytecode, but to rewrite all assertions anew takes 12 s.
     sys.dont_write_bytecode = False
@@ -64,6 +68,16 @@ def pytest_configure(config: pytest.Config) -> None:
     if not hasattr(config, "workerinput"):
         # Some tests start irlx as a process, which writes none.
         compileall.compile_dir(SOURCE, quiet=2)
+
+
+def _keep_files_in_memory() -> None:
+    """Temporary folders are in memory where it has room.
+
+    A disk takes some 5 ms to write a file over another one, thousands of times. The folder of a test that
+    passes is removed behind it (`tmp_path_retention_policy` in `pyproject.toml`): together they are small.
+    """
+    if MEMORY.is_dir() and os.access(MEMORY, os.W_OK) and shutil.disk_usage(MEMORY).free >= ROOM:
+        os.environ.setdefault("PYTEST_DEBUG_TEMPROOT", str(MEMORY))
 
 
 def _asked_to_store(descriptor: int) -> None:
