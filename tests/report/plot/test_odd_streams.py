@@ -12,7 +12,7 @@ from irlx.plotting import plotted
 from irlx.report.plot.figure import draw_figure, save_figure
 from irlx.report.plot.terminal import terminal_text
 from irlx.streams import write_stream
-from long_run import chequered
+from long_run import diagonal
 
 pytestmark = [pytest.mark.req("REP-03"), pytest.mark.req("QA-06")]
 ROWS = [
@@ -30,7 +30,7 @@ def drawn(folder, stream):
     save_figure(draw_figure(found.curves, found.joints), folder / "odd.png")
 
 
-@pytest.mark.parametrize(("rows", "value"), chequered(ROWS, [1e300, 1e-320, -1e300]))
+@pytest.mark.parametrize(("rows", "value"), diagonal(ROWS, [1e300, 1e-320, -1e300]))
 def test_numbers_of_any_size(tmp_path, rows, value):
     stream = square_and_slow()
     q, tool = stream.q.copy(), stream.tool.copy()
