@@ -12,6 +12,7 @@ import pytest
 from irlx.motion.pose_path import Poses
 from irlx.motion.trapezoid import Trapezoid
 from irlx.pacing.slowdown import relax as relax_module
+from irlx.pacing.slowdown.curve import JointCurve
 from irlx.pacing.slowdown.elastic_walk import Passage
 from irlx.pacing.slowdown.grid import STEP, PathGrid, Spacing, path_grid
 from irlx.pacing.slowdown.model import Model, null_spaces
@@ -20,7 +21,7 @@ from irlx.pacing.slowdown.relax import _GOLDEN, Smoothing, _Relaxation, _solve_b
 from irlx.pacing.slowdown.reserve import RESERVE, reserved
 from long_run import first
 from machines import least_motion, machine
-from slow_cases import grid_of, jacobian_at, slow_limits, walked
+from slow_cases import WAYS, grid_of, jacobian_at, slow_limits, walked
 
 pytestmark = pytest.mark.req("MOT-21")
 
@@ -66,7 +67,7 @@ def case(name: str, share: float = 0.7, frozen: tuple[int, ...] = ()) -> Case:
 
 
 def roughness(of: Case, q: np.ndarray) -> float:
-    """sum_i W |h^2 q''|^2 at the inner knots, q'' of the parabola through three of them."""
+    """sum_i a_i W |h^2 q''|^2 at the inner knots, q'' of the parabola through three of them."""
     return float(np.sum(bend(of.grid.s, q) ** 2 @ machine(of.name).weights))
 
 
@@ -74,7 +75,13 @@ def bend(s: np.ndarray, q: np.ndarray) -> np.ndarray:
     left, right = np.diff(s)[:-1, None], np.diff(s)[1:, None]
     slopes = np.diff(q, axis=0) / np.diff(s)[:, None]
     second = 2.0 * np.diff(slopes, axis=0) / (left + right)
-    return (0.5 * (left + right)) ** 2 * second
+    return np.max(np.diff(s)) ** 2 * np.sqrt(shares_at(s)[1:-1, None]) * second
+
+
+def shares_at(s: np.ndarray) -> np.ndarray:
+    """Mean width of the intervals beside each knot, in parts of the widest one."""
+    widths = np.pad(np.diff(s), 1, mode="edge")
+    return np.convolve(widths, [0.5, 0.5], mode="valid") / np.max(widths)
 
 
 def speed_excess(of: Case, q: np.ndarray) -> float:
@@ -87,7 +94,7 @@ def speed_excess(of: Case, q: np.ndarray) -> float:
 def objective(of: Case, q: np.ndarray, smoothing: Smoothing) -> float:
     """The sum of docs/reference/pacing.md, written down once more."""
     weights = machine(of.name).weights
-    near = (of.grid.step / smoothing.tau) ** 4 * np.sum((q - of.passage.q) ** 2 @ weights)
+    near = (of.grid.step / smoothing.tau) ** 4 * shares_at(of.grid.s) @ ((q - of.passage.q) ** 2 @ weights)
     out = np.maximum(np.maximum(q - of.bounds[1], of.bounds[0] - q), 0.0)
     fast = smoothing.mu * (of.grid.step / STEP) ** 2 * speed_excess(of, q)
     return roughness(of, q) + float(near) + fast + 1e5 * float(np.sum(out**2 @ weights))
@@ -176,6 +183,28 @@ def test_positions_are_left_by_no_more_than_the_reserve(name: str) -> None:
     assert np.max(np.maximum(q - of.bounds[1], of.bounds[0] - q)) < RESERVE
 
 
+@pytest.mark.parametrize("smoothing", SMOOTHINGS)
+def test_knots_that_crowd_bring_no_bends(smoothing: Smoothing) -> None:
+    """Beside some knots there is one more, a twentieth of an interval away, as where phases of a law meet."""
+    of, robot = case("arm7"), machine("arm7")
+    s = of.grid.s
+    crowded = np.sort(np.append(s, s[10:-10:9] + 0.05 * np.diff(s)[10:-9:9]))
+    path = robot.line(WAYS["arm7"], (0.1, -0.2, 0.15))
+    times = np.diff(np.interp(crowded, s, np.append(0.0, np.cumsum(of.grid.times))))
+    rates = np.interp(crowded, s, of.grid.rates)
+    grid = PathGrid(crowded, times, rates, path.poses(crowded), of.grid.step)
+    bounds = reserved(of.limits, grid.intervals + 1, RESERVE)
+    walk = JointCurve(s, of.passage.q).at(crowded)
+    q = relax(robot.model(of.limits), grid, walk, bounds, smoothing)
+    evenly = of.relaxed(smoothing)
+    assert np.max(np.abs(q[np.isin(crowded, s)] - evenly)) < 2e-4
+    most = [
+        np.max(np.abs(JointCurve(knots, rows).derivatives(knots)[1]))
+        for knots, rows in ((s, evenly), (crowded, q))
+    ]
+    assert most[1] < 1.5 * most[0]
+
+
 def test_frozen_joints_keep_their_bits() -> None:
     of = case("koch11", 0.8, (1, 4))
     q = of.relaxed(Smoothing(0.1, 1.0))
@@ -228,7 +257,7 @@ class Few:
     def objective(self, q: np.ndarray, smoothing: Smoothing) -> float:
         """The stated sum for postures q, as it is written at the head of the module."""
         w, limits, ratio = self.model.weights, self.model.limits, (self.grid.step / STEP) ** 2
-        pull = np.full(len(q), (self.grid.step / smoothing.tau) ** 4)
+        pull = (self.grid.step / smoothing.tau) ** 4 * shares_at(self.grid.s)
         pull[4] = 1e5
         steps, times = np.diff(q, axis=0), self.grid.times[:, None]
         fast = np.maximum(steps - 0.995 * limits.speed_upper * times, 0.0)

@@ -4,10 +4,12 @@ The elastic walk leaves kinks in q'(s) where bounds become active; a clock stops
 Over d_i = Z_i y_i, Z_i a basis of the null space at knot i, with both ends held (what follows in the program
 does not depend on the slowing), minimise
 
-    sum_i W |h^2 q''_i|^2 + (h / l)^4 W |q_i - q_walk,i|^2
+    sum_i a_i W |h^2 q''_i|^2 + a_i (h / l)^4 W |q_i - q_walk,i|^2
         + mu W (|dq_i| - 0.995 v dT_i)_+^2 + 1e5 W (position excess)_+^2,     l = tau x programmed speed,
 
-and the squares of what pairs lack of their margins, at the price of the joint step that would make up for it,
+h the widest spacing and a_i h that at knot i, so that the first two terms are integrals over s however the
+knots lie (narrow ones would take bends of any size for nothing, and a clock all but stops there), and the
+squares of what pairs lack of their margins, at the price of the joint step that would make up for it,
 
 by Newton's method on the active set of the hinges (a band matrix), then back onto the path. A step that does
 not lower the sum is halved: full ones may go to and fro between several sets for ever. A knot at which a
@@ -114,8 +116,10 @@ class _Relaxation:
         self._fastest = _SPEED_SHARE * limits.speed_upper[free] * grid.times[:, None]
         self._slowest = _SPEED_SHARE * limits.speed_lower[free] * grid.times[:, None]
         self._mu = smoothing.mu * (grid.step / STEP) ** 2
-        self._second = _second_differences(np.diff(grid.s))
-        self._attraction = np.full(len(q), (grid.step / smoothing.tau) ** 4)
+        shares = np.diff(grid.s) / np.max(np.diff(grid.s))
+        self._second = _second_differences(shares)
+        at_knots = 0.5 * (np.append(shares[0], shares) + np.append(shares, shares[-1]))
+        self._attraction = (grid.step / smoothing.tau) ** 4 * at_knots
         self._attraction[list(pinned)] = _PIN_PRICE
         self._near = near
         if near is not None:
@@ -276,11 +280,12 @@ def _beyond(values: Array, lower: Array, upper: Array) -> Array:
     return np.asarray(over.sum(axis=0))
 
 
-def _second_differences(widths: Array) -> tuple[Array, Array, Array]:
-    """Coefficients (N - 1,) of h^2 q'' at the interior knots by three points, h the mean spacing there."""
-    left, right = widths[:-1], widths[1:]
-    mean = 0.5 * (left + right)
-    before, after = mean / left, mean / right
+def _second_differences(shares: Array) -> tuple[Array, Array, Array]:
+    """Coefficients (N - 1,) of the root of a times h^2 q'' at the interior knots by three points; `shares`
+    (N,) are the spacings in parts of h, the widest, and a (N - 1,) their means about a knot."""
+    left, right = shares[:-1], shares[1:]
+    root = np.sqrt(0.5 * (left + right))
+    before, after = 1.0 / (root * left), 1.0 / (root * right)
     return before, -(before + after), after
 
 
