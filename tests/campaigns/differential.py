@@ -4,6 +4,7 @@ programs  what programs come to, against an evaluator written from the reference
 ticks     ticks of the inverse transform, against optimisers and conditions of an optimum by differences
 laws      time laws of moves, against integration and closed forms
 joined    runs of short programs whose moves pass into each other, against the verifier
+smooth    the same with S curves, whose jerk the verifier takes from the rows
 
 Seeds are those of the tests with the same cases. A case that differs is printed with its seed, and the
 command ends with 1; Ctrl-C ends it with what was found so far.
@@ -28,8 +29,10 @@ def judge_of(kind):
         from second_ticks import judged
     elif kind == "laws":
         from second_laws import judged
-    else:
+    elif kind == "joined":
         from joined_programs import judged
+    else:
+        from joined_programs import judged_smooth as judged
     return judged
 
 
@@ -37,7 +40,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("kind", choices=("programs", "ticks", "laws", "joined"))
+    parser.add_argument("kind", choices=("programs", "ticks", "laws", "joined", "smooth"))
     parser.add_argument("--first", type=int, default=0, help="first seed, by default 0")
     parser.add_argument("--count", type=int, default=1000, help="number of seeds, by default 1000")
     given = parser.parse_args()

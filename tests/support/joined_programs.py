@@ -146,10 +146,15 @@ def numbers(values: np.ndarray) -> str:
     return ", ".join(f"{value:.9g}" for value in values)
 
 
-def program_of(seed: int, folder: Path) -> tuple[Path, Path]:
-    """Program and cell of a seed; from `TIGHT` on joints are slow, too, and moves have each its own ACC."""
+def program_of(seed: int, folder: Path, smooth: bool = False) -> tuple[Path, Path]:
+    """Program and cell of a seed; from `TIGHT` on joints are slow, too, and moves have each its own ACC.
+
+    `smooth`: the same with S curves and their jerk, some moves having another one or none.
+    """
     drawing = Drawing(seed)
     motion, body = drawing.motion(), drawing.body()
+    if smooth:
+        motion, body = smoothed(seed, motion, body)
     if seed >= TIGHT:
         rng = np.random.default_rng([31, seed])
         joints = drawing.start.values.size
@@ -168,11 +173,33 @@ def program_of(seed: int, folder: Path) -> tuple[Path, Path]:
     return written(folder, drawing.robot, body, motion)
 
 
-def judged(seed: int) -> tuple[str, list[str]]:
+def smoothed(seed: int, motion: str, body: str) -> tuple[str, str]:
+    """Motion of the cell and moves with S curves: ramps that take some ms up to a second."""
+    rng = np.random.default_rng([37, seed])
+    motion += f'\nprofile = "S_CURVE"\njerk = {np.exp(rng.uniform(np.log(1e3), np.log(1e7))):.6g}'
+    lines = []
+    for line in body.splitlines():
+        words = [
+            f"JERK := {np.exp(rng.uniform(np.log(1e3), np.log(1e7))):.6g}",
+            "PROFILE := 'TRAPEZOID'",
+            "",
+            "",
+        ]
+        word = "" if "PTP" in line else str(rng.choice(words))
+        lines.append(f"{line[:-1]} {word};" if word else line)
+    return motion, "\n".join(lines)
+
+
+def judged_smooth(seed: int) -> tuple[str, list[str]]:
+    """The same of the program with S curves."""
+    return judged(seed, True)
+
+
+def judged(seed: int, smooth: bool = False) -> tuple[str, list[str]]:
     """How the program of a seed ended, and what the verifier has against its run."""
     warnings.simplefilter("ignore")
     with tempfile.TemporaryDirectory() as name:
-        program, cell = program_of(seed, Path(name))
+        program, cell = program_of(seed, Path(name), smooth)
         end = "complete"
         try:
             run = irlx.run(program, cell)
