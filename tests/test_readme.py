@@ -25,12 +25,9 @@ def clone(tmp_path):
     return tmp_path
 
 
-LONG = (
-    "irlx run programs/koch/square_slow.irl",
-    "irlx run square.irdata --cell programs/koch/square.toml",
-)
-"""Commands, the first ones of their sessions, that take most of the time of all: tests of slowed runs,
-`cli/test_replay.py` and `cli/test_reproduce.py` look at what such ones print, of shorter programs."""
+LONG = ("irlx run programs/koch/square_slow.irl",)
+"""The first commands of sessions that take most of the time of all: tests of slowed runs look at what such a
+one prints, of shorter programs."""
 DEMO = "irlx demo"
 """What it prints, `cli/test_demo.py` compares."""
 
