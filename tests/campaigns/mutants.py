@@ -256,6 +256,8 @@ def prepared() -> None:
     """Heavy libraries are imported once; random tests draw the same examples for each damage."""
     os.chdir(ROOT)
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    # Forks leave folders behind, which would fill the memory.
+    os.environ.setdefault("PYTEST_DEBUG_TEMPROOT", tempfile.gettempdir())
     sys.dont_write_bytecode = True
     for name in LIBRARIES.split():
         with contextlib.suppress(ImportError):
