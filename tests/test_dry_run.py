@@ -219,3 +219,14 @@ def test_a_band_that_few_knots_would_pass_is_no_error(tmp_path) -> None:
     )
     assert irlx.run(tmp_path / "p.irl").complete
     assert motion_codes(irlx.check(tmp_path / "p.irl", motion=True)) == []
+
+
+def test_it_ends_at_a_closed_path_that_would_begin_nobody_knows_where(tmp_path) -> None:
+    """Questions for the posture: the page of IRL447."""
+    (tmp_path / "t.toml").write_text('[robot]\nmodel = "arm7"\n')
+    beyond = "MOVE LIN POSITION(900, 261, 325);"
+    body = f"{beyond}\nCYCLICSTART;\nMOVE_INC LIN (0, 20, 0);\nCYCLICEND;"
+    (tmp_path / "t.irl").write_text(f"PROGRAM t;\nBEGIN\n{body}\nENDPROGRAM;\n")
+    found = irlx.check(tmp_path / "t.irl", motion=True)
+    assert [(one.place.line, one.code) for one in found if one.place] == [(3, "IRL520"), (4, "IRL447")]
+    assert "since the move of line 3" in found[1].message

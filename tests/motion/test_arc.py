@@ -60,6 +60,18 @@ def rounding_of(truth: Truth, via: float, end: float) -> float:
     return grain * (truth.radius / spread(start, middle, last).height) ** 2
 
 
+def test_distances_and_the_height_over_the_longest_side() -> None:
+    """A triangle of 3, 4 and 5 parts is 2.4 of them high, wherever it lies and however large it is."""
+    for scale in (1e-9, 1.0, 1e9):
+        corners = scale * Rotation.random(random_state=3).apply(
+            [(0.0, 0.0, 0.0), (3.0, 0.0, 0.0), (0.0, 4.0, 0.0)]
+        )
+        found = spread(*corners)
+        sides = found.start_via, found.via_end, found.start_end
+        np.testing.assert_allclose(sides, scale * np.array([3.0, 5.0, 4.0]), rtol=1e-13)
+        assert found.height == pytest.approx(2.4 * scale, rel=1e-13)
+
+
 @pytest.mark.parametrize("seed", SEEDS)
 def test_positions_equal_the_closed_form(kit, seed: int) -> None:
     truth, via, end = random_truth(seed)

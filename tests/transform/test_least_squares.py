@@ -4,7 +4,13 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares, lsq_linear
 
-from irlx.transform.least_squares import least_squares_from, least_squares_in_bounds
+from irlx.transform.least_squares import (
+    _Search,
+    _step,
+    _steps,
+    least_squares_from,
+    least_squares_in_bounds,
+)
 from long_run import first
 
 
@@ -116,3 +122,32 @@ def test_a_damping_that_is_lost_in_rounding():
     together = dict(least_squares_from([residual] * 4, [0.1 * k * np.ones(3) for k in range(4)], *bounds))
     for found in (alone, *together.values()):
         assert np.sum(found) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_steps_side_by_side_are_those_of_each(seed):
+    """Some variables stand on a bound, some steps would lead beyond one."""
+    random = np.random.default_rng(300 + seed)
+    lower, upper = -random.uniform(0.1, 0.6, 6), random.uniform(0.1, 0.6, 6)
+    starts = np.clip(random.uniform(-0.8, 0.8, (8, 6)), lower, upper)
+    rows = [linear(random.normal(size=(3, 6)), random.normal(size=3)) for _ in starts]
+    searches = [_Search(row, start, lower, upper) for row, start in zip(rows, starts, strict=True)]
+    for search in searches:
+        search.damping = 10.0 ** random.uniform(-3.0, 1.0)
+    found, alone = _steps(searches), np.array([_step(search) for search in searches])
+    np.testing.assert_allclose(found, alone, rtol=0, atol=1e-12)
+    ends = starts + alone
+    assert np.any(starts == lower)
+    assert np.any((ends == upper) & (starts < upper))
+
+
+def test_damping_is_eased_where_little_can_be_won_and_is():
+    """One row of 10 that no variable changes: of 101 a step leaves 100, as foretold."""
+
+    def residual(x):
+        return np.array([x[0] - 1.0, 10.0]), np.array([[1.0], [0.0]])
+
+    search = _Search(residual, np.zeros(1), np.full(1, -9.0), np.full(1, 9.0))
+    search.take(_step(search))
+    assert search.x[0] == pytest.approx(1.0, abs=0.02)
+    assert search.damping < 5e-3

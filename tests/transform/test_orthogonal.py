@@ -79,6 +79,15 @@ def test_free_and_path_step_are_right_to_their_last_digits(sine: float, full: bo
             np.testing.assert_allclose(step(problem), wanted, rtol=0, atol=lost * size, err_msg=f"{seed}")
 
 
+def test_as_many_rows_as_joints_have_one_step() -> None:
+    problem = nearly_singular(2, 6, 6, 1e-6, True)
+    whole = whole_system(problem)
+    for step, gradient in ((free_step, problem.gradient), (path_step, np.zeros(6))):
+        wanted = exactly_solved(whole, np.concatenate([-gradient, problem.twist]))[:6]
+        size = max(1.0, float(np.max(np.abs(wanted))))
+        np.testing.assert_allclose(step(problem), wanted, rtol=0, atol=1e-12 * size)
+
+
 @pytest.mark.parametrize("full", [False, True], ids=["diagonal", "full"])
 @pytest.mark.parametrize("sine", SINES)
 def test_null_space_is_orthonormal_and_has_no_part_along_the_path(sine: float, full: bool) -> None:
@@ -101,6 +110,14 @@ def test_rank_lost_to_rounding_is_reported_but_leaves_a_null_space(full: bool) -
     for step in (free_step, path_step):
         with pytest.raises(np.linalg.LinAlgError):
             step(problem)
+    rows = null_space_rows(problem)
+    assert rows.shape == (9, 4)
+    np.testing.assert_allclose(problem.jacobian @ rows, 0.0, atol=1e-12 * np.max(np.abs(problem.jacobian)))
+
+
+def test_a_row_of_zeros_leaves_a_null_space() -> None:
+    problem = nearly_singular(3, 9, 5, 0.1, False)
+    problem.jacobian[2] = 0.0
     rows = null_space_rows(problem)
     assert rows.shape == (9, 4)
     np.testing.assert_allclose(problem.jacobian @ rows, 0.0, atol=1e-12 * np.max(np.abs(problem.jacobian)))

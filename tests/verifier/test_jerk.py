@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from irlx.blocks import Blend, Profile
+from irlx.blocks import Blend, JointTarget, MoveBlock, MoveKind, Profile
+from irlx.promises import PATH_POSITION
 from irlx.streams import JointStream
 from irlx.verifier import rows, verify_stream
+from irlx.verifier.chain_legs import jerk_of
+from irlx.verifier.findings.tally import Tally
 from irlx.verifier.judges import chained_moves, tool_moves
+from irlx.verifier.judges.jerk import add_jerk
 from made_chains import DT, LAW, START, STEPS, TURNS, lin, lines, run, start_of
-from passing_moves import trapezoid, way_of
+from passing_moves import way_of
 
 pytestmark = [pytest.mark.req("MOT-03"), pytest.mark.req("STR-06")]
 
@@ -57,6 +62,32 @@ def with_law(stream: JointStream, law) -> JointStream:
 
 def jerk_check(stream: JointStream, robot):
     return verify_stream(stream, robot)["programmed jerk"]
+
+
+def tallied(jerks, bound) -> Tally:
+    """The check of ways with these third differences (R,), bounds (R + 3,) at their rows, a second a tick."""
+    outline = SimpleNamespace(header=SimpleNamespace(joint_names=()), block_at=lambda _: 1, lines={})
+    tally = Tally("programmed jerk", "m/s3", outline)
+    along = np.concatenate([np.zeros(3), np.cumsum(np.cumsum(np.cumsum(jerks)))])
+    add_jerk(tally, np.arange(len(jerks)), along, np.array(bound), 1.0)
+    return tally
+
+
+@pytest.mark.parametrize(("more", "offends"), [(1.9e-6, False), (2.1e-6, True)])
+def test_of_the_programmed_it_may_be_more_by_two_millionths(more: float, offends: bool) -> None:
+    assert (tallied([1.0 + more], np.ones(4)).first is not None) is offends
+
+
+def test_the_worst_is_what_uses_most_of_its_own_bound() -> None:
+    worst = tallied([1.0, *[0.0] * 6, 0.8], [*[10.0] * 4, *[1.0] * 7]).worst
+    assert (worst.tick, worst.value, worst.allowed) == (7, pytest.approx(0.8), 1.0)
+
+
+def test_laws_that_bound_it() -> None:
+    """A cell may name a jerk for moves that do not ask for S curves."""
+    assert jerk_of(s_curve(60.0)) == 60.0
+    assert jerk_of(replace(LAW, profile=Profile.S_CURVE)) == np.inf
+    assert jerk_of(replace(LAW, jerk=60.0)) == np.inf
 
 
 @pytest.mark.parametrize("kind", ["line", "arc"])
@@ -124,19 +155,64 @@ def test_the_start_and_the_end_count_and_none_is_asked_of_a_trapezoid(gantry_kit
     assert jerk_check(chain_of(gantry_kit, [None] * 3)[0], robot).status == "no case"
 
 
-def test_the_last_row_counts(gantry_kit, robot) -> None:
-    """A move that stops within a tick: only differences that reach behind its end tell."""
+@pytest.mark.parametrize("count", [1, 2])
+def test_the_last_row_counts(gantry_kit, robot, count: int) -> None:
+    """A move, or joined ones, that stop within a tick: only differences that reach behind the end tell."""
     maker = gantry_kit.Maker(START.copy())
-    (curve,) = lines(start_of(gantry_kit), SHORT[:1], TURNS[:1])
-    way = way_of([curve], [])
-    s = trapezoid(way.length, 0.1, 0.4, DT)
-    s = np.append(s[:-3], way.length)
+    curves = lines(start_of(gantry_kit), SHORT[:count], TURNS[:count])
+    way = way_of(curves, DISTANCES[: count - 1])
+    # It ends in steps of 3, 2 and 1 parts, which a row at rest follows: as if it went on slowing down.
+    x = np.arange(1, 201) / 200.5
+    s = x**3 * (4.0 - 3.0 * x)
+    s *= way.length / s[-1]
     found = jerks_of(s)
-    assert np.argmax(found) >= len(s) - 1
-    run(maker, way, [lin(curve, law=s_curve(0.9 * float(np.max(found))))], s)
+    assert np.argmax(found) == len(found) - 1
+    assert np.max(found[:-1]) < 0.2 * found[-1]
+    law = s_curve(0.5 * float(found[-1]))
+    blends = [*(Blend(distance=distance) for distance in DISTANCES[: count - 1]), None]
+    run(maker, way, [lin(curve, blend, law=law) for curve, blend in zip(curves, blends, strict=True)], s)
     check = jerk_check(maker.stream(), robot)
     assert check.status == "failed"
-    assert check.first.tick >= len(s)
+    # A row at rest comes before it.
+    assert (check.first.tick, check.first.value) == (len(s) + 1, pytest.approx(found[-1], rel=1e-3))
+
+
+def behind_a_ptp(kit, bump: int | None = None) -> tuple[JointStream, np.ndarray]:
+    """Two joined lines, 20 m/s3 each, into which a PTP of 50 ticks leads round a corner, and their ways.
+
+    With `bump` that row of theirs is further on by 2 um.
+    """
+    maker = kit.Maker(START - 0.02)
+    number = maker.record(
+        MoveBlock,
+        kind=MoveKind.PTP,
+        target=JointTarget(tuple(START.tolist())),
+        law=kit.LAW,
+        blend=Blend(share=1.0),
+    )
+    maker.emit(number, START - 0.02 + 0.018 * kit.smooth(100)[:50, None], holds=0)
+    curves = lines(kit.pose_of(START), SHORT[:2], TURNS[:2])
+    way = way_of(curves, DISTANCES[:1])
+    s = way.length * kit.smooth(400)
+    s = s[s > 0.008]
+    if bump is not None:
+        s[bump] += 2e-6
+    blends = [Blend(distance=DISTANCES[0]), None]
+    pairs = zip(curves, blends, strict=True)
+    run(maker, way, [lin(curve, blend, law=s_curve(20.0)) for curve, blend in pairs], s)
+    return maker.stream(), s
+
+
+def test_behind_a_corner_to_a_ptp_it_counts_from_the_fourth_row_on_the_way(gantry_kit, robot) -> None:
+    """How the tool came to the first ones nobody knows."""
+    good, s = behind_a_ptp(gantry_kit)
+    report = verify_stream(good, robot)
+    assert report["programmed jerk"].status == "ok"
+    fourth = 3 + int(np.argmax(s >= report["path position"].worst.allowed - PATH_POSITION))
+    for bump, tick in ((fourth - 1, fourth), (fourth, fourth), (fourth + 9, fourth + 9)):
+        check = jerk_check(behind_a_ptp(gantry_kit, bump)[0], robot)
+        # Fifty rows of the PTP come before, and the start.
+        assert (check.status, check.first.tick) == ("failed", 51 + tick)
 
 
 def test_portions_do_not_matter(gantry_kit, robot, monkeypatch) -> None:
@@ -157,6 +233,7 @@ def test_longer_motions_are_promised_none(gantry_kit, robot, monkeypatch, joined
         maker.lin((0.2, 0.1, 0.3), ticks=50)
         stream = with_law(maker.stream(), law)
     judge = chained_moves if joined else tool_moves
-    for most, status in ((len(stream.q), "failed"), (20, "no case")):
+    ticks = len(stream.q) - 1
+    for most, status in ((ticks, "failed"), (ticks - 1, "no case")):
         monkeypatch.setattr(judge, "JERK_TICKS", most)
         assert jerk_check(stream, robot).status == status
