@@ -232,9 +232,10 @@ def test_another_tool(tmp_path) -> None:
     np.testing.assert_allclose(run.tool[-1, :3], [0.6, 0.1, 0.95], atol=1e-12)
 
 
-def test_a_verifier_of_its_own_finds_what_is_off(tmp_path) -> None:
+@pytest.mark.parametrize("passing", ["", " C_CP := 5"], ids=["alone", "joined"])
+def test_a_verifier_of_its_own_finds_what_is_off(tmp_path, passing) -> None:
     """Pitch, roll, and at the end the turn that follows: each in the check that is its own."""
-    body = f"  MOVE LIN {aimed(700, 20, 900, 45, 20)};\n  MOVE LIN {aimed(700, -20, 900, 45, -20)};"
+    body = f"  MOVE LIN {aimed(700, 20, 900, 45, 20)}{passing};\n  MOVE LIN {aimed(700, -20, 900, 45, -20)};"
     run = ran(tmp_path, body)
     end = next(r.tick for r in run.stream.records if r.block.id == 2)
     for joint in (3, 4):

@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 from irlx.blocks import (
     ArcCourse,
     Blend,
+    JointTarget,
     MotionLaw,
     MoveBlock,
     MoveKind,
@@ -70,6 +71,15 @@ def run(maker, way: Way, blocks: list[dict], s: np.ndarray, last_of: list[int] |
         if len(part):
             maker.emit(identity, part, holds=int(hold))
         begin = end
+
+
+def led_in(kit):
+    """A stream of a PTP of 50 ticks that leads from 0.02 before `START` round it: it goes on from 0.002."""
+    maker = kit.Maker(START - 0.02)
+    data = {"target": JointTarget(tuple(START.tolist())), "law": kit.LAW, "blend": Blend(share=1.0)}
+    number = maker.record(MoveBlock, kind=MoveKind.PTP, **data)
+    maker.emit(number, START - 0.02 + 0.018 * kit.smooth(100)[:50, None], holds=0)
+    return maker
 
 
 def lin(curve: Curve, blend: Blend | None = None, **more) -> dict:

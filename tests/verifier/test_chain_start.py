@@ -6,15 +6,17 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from irlx.blocks import ArcCourse, PoseTarget
+import made_chains
+from irlx.blocks import ArcCourse, Blend, MoveBlock, PoseTarget
+from irlx.verifier import verify_stream
 from irlx.verifier.geometry.allowance import EXACT
 from irlx.verifier.geometry.arcs import arc_shape
 from irlx.verifier.geometry.chain_parts import Leg
 from irlx.verifier.geometry.corners import Corner
 from irlx.verifier.geometry.curves import ArcCurve, LineCurve
 from irlx.verifier.judges.chain_start import ChainStart, start_of_chain
-from made_chains import lines, pose_at
-from passing_moves import way_of
+from made_chains import led_in, lin, lines, pose_at
+from passing_moves import postures, way_of
 
 pytestmark = [pytest.mark.req("MOT-06"), pytest.mark.req("STR-06")]
 
@@ -147,3 +149,15 @@ def test_more_rounds_than_the_corner_takes_are_missed() -> None:
     ways = np.append(np.arange(0.75 * TWICE, TWICE, 0.4), [TWICE, TWICE])
     start, loose = round_a_circle(ways)
     assert start is None or start.ways[-1] < CIRCLE_RADIUS * (ways[start.placed - loose - 1] - 1.0)
+
+
+def test_a_line_between_two_ptps_may_have_one_row_alone(gantry_kit, robot) -> None:
+    maker = led_in(gantry_kit)
+    start, turn = gantry_kit.pose_of(made_chains.START)
+    (curve,) = lines((start, turn), [(0.1, 0.0, 0.0)], [(0.0, 0.0, 0.0)])
+    aside = np.array([[0.0525, 0.0, 0.0], [0.055, 0.001, 0.0], [0.06, 0.004, 0.0], [0.06, 0.008, 0.0]])
+    number = maker.record(MoveBlock, **{"law": made_chains.LAW, **lin(curve, Blend(distance=0.05))})
+    maker.emit(number, postures(start + aside, np.array([turn.as_matrix()] * len(aside))), holds=0)
+    maker.ptp(maker.rows[-1] + 0.05)
+    check = verify_stream(maker.stream(), robot)["path position"]
+    assert check.status == "ok", check.text

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from irlx.blocks import Blend, JointTarget, MoveBlock, MoveKind, Profile
+from irlx.blocks import Blend, MoveBlock, Profile
 from irlx.promises import PATH_POSITION
 from irlx.streams import JointStream
 from irlx.verifier import rows, verify_stream
@@ -16,8 +16,8 @@ from irlx.verifier.chain_legs import jerk_of
 from irlx.verifier.findings.tally import Tally
 from irlx.verifier.judges import chained_moves, tool_moves
 from irlx.verifier.judges.jerk import add_jerk
-from made_chains import DT, LAW, START, STEPS, TURNS, lin, lines, run, start_of
-from passing_moves import way_of
+from made_chains import DT, LAW, START, STEPS, TURNS, led_in, lin, lines, run, start_of
+from passing_moves import postures, way_of
 
 pytestmark = [pytest.mark.req("MOT-03"), pytest.mark.req("STR-06")]
 
@@ -177,26 +177,18 @@ def test_the_last_row_counts(gantry_kit, robot, count: int) -> None:
     assert (check.first.tick, check.first.value) == (len(s) + 1, pytest.approx(found[-1], rel=1e-3))
 
 
-def behind_a_ptp(kit, bump: int | None = None) -> tuple[JointStream, np.ndarray]:
+def behind_a_ptp(kit, bump: int | None = None, by: float = 2e-6) -> tuple[JointStream, np.ndarray]:
     """Two joined lines, 20 m/s3 each, into which a PTP of 50 ticks leads round a corner, and their ways.
 
-    With `bump` that row of theirs is further on by 2 um.
+    With `bump` that row of theirs is further on by so many m.
     """
-    maker = kit.Maker(START - 0.02)
-    number = maker.record(
-        MoveBlock,
-        kind=MoveKind.PTP,
-        target=JointTarget(tuple(START.tolist())),
-        law=kit.LAW,
-        blend=Blend(share=1.0),
-    )
-    maker.emit(number, START - 0.02 + 0.018 * kit.smooth(100)[:50, None], holds=0)
+    maker = led_in(kit)
     curves = lines(kit.pose_of(START), SHORT[:2], TURNS[:2])
     way = way_of(curves, DISTANCES[:1])
     s = way.length * kit.smooth(400)
     s = s[s > 0.008]
     if bump is not None:
-        s[bump] += 2e-6
+        s[bump] += by
     blends = [Blend(distance=DISTANCES[0]), None]
     pairs = zip(curves, blends, strict=True)
     run(maker, way, [lin(curve, blend, law=s_curve(20.0)) for curve, blend in pairs], s)
@@ -213,6 +205,27 @@ def test_behind_a_corner_to_a_ptp_it_counts_from_the_fourth_row_on_the_way(gantr
         check = jerk_check(behind_a_ptp(gantry_kit, bump)[0], robot)
         # Fifty rows of the PTP come before, and the start.
         assert (check.status, check.first.tick) == ("failed", 51 + tick)
+    # Nor may the third one lie behind the second.
+    back = s[fourth - 2] - s[fourth - 1] - 1e-8
+    report = verify_stream(behind_a_ptp(gantry_kit, fourth - 1, back)[0], robot)
+    assert report["path progress"].first.tick == 51 + fourth - 1
+
+
+def test_nor_do_portions_behind_a_corner(gantry_kit, robot, monkeypatch) -> None:
+    """The first row that has too much is the first one of a portion."""
+    stream, _ = behind_a_ptp(gantry_kit, 61)
+    due = jerk_check(stream, robot).first
+    monkeypatch.setattr(rows, "PORTION", 4)
+    assert jerk_check(stream, robot).first == due
+
+
+def test_of_two_rows_behind_a_corner_nobody_knows_the_jerk(gantry_kit, robot) -> None:
+    maker = led_in(gantry_kit)
+    (curve,) = lines(gantry_kit.pose_of(START), [(0.1, 0.0, 0.0)], [(0.0, 0.0, 0.0)])
+    points, turns = way_of([curve], []).poses(curve.length - np.array([1e-3, 0.0]))
+    number = maker.record(MoveBlock, **lin(curve, law=s_curve(20.0)))
+    maker.emit(number, postures(points, turns), holds=0)
+    assert jerk_check(maker.stream(), robot).status == "no case"
 
 
 def test_portions_do_not_matter(gantry_kit, robot, monkeypatch) -> None:
@@ -221,6 +234,11 @@ def test_portions_do_not_matter(gantry_kit, robot, monkeypatch) -> None:
     parts = jerk_check(chain_of(gantry_kit, [60.0] * 3, (0.5, 2e-6))[0], robot)
     assert parts.first.tick == whole.first.tick
     assert parts.worst.value == pytest.approx(whole.worst.value, rel=1e-6)
+    maker = gantry_kit.Maker(START.copy())
+    maker.lin((0.2, 0.4, 0.3), ticks=50)
+    jerk = 1.01 * float(np.max(jerks_of(0.5 * gantry_kit.smooth(50))))
+    alone = with_law(maker.stream(), replace(gantry_kit.LAW, profile=Profile.S_CURVE, jerk=jerk))
+    assert jerk_check(alone, robot).status == "ok"
 
 
 @pytest.mark.parametrize("joined", [True, False])
