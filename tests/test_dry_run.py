@@ -230,3 +230,11 @@ def test_it_ends_at_a_closed_path_that_would_begin_nobody_knows_where(tmp_path) 
     found = irlx.check(tmp_path / "t.irl", motion=True)
     assert [(one.place.line, one.code) for one in found if one.place] == [(3, "IRL520"), (4, "IRL447")]
     assert "since the move of line 3" in found[1].message
+
+
+def test_of_joined_moves_the_one_that_cannot_be_done_is_told_and_the_next_looked_at(tmp_path) -> None:
+    (tmp_path / "t.toml").write_text('[robot]\nmodel = "arm7"\n')
+    lines = ["(441, 150, 324) C_CP := 10", "(900, 261, 325) C_CP := 10", "(441, 200, 324) C_CP := 10"]
+    body = "\n".join(f"MOVE LIN {line};" for line in [*lines, "(441, 180, 324)"])
+    (tmp_path / "t.irl").write_text(f"PROGRAM t;\nBEGIN\n{body}\nENDPROGRAM;\n")
+    assert motion_codes(irlx.check(tmp_path / "t.irl", motion=True)) == [(4, "IRL520")]

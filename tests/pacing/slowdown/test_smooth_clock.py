@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import scipy.optimize
+from scipy.sparse import csr_matrix
 
 from irlx.motion.fastest_law import fastest_s_curves, fastest_trapezoids
 from irlx.motion.sections import Sections
@@ -14,7 +15,7 @@ from irlx.pacing.slowdown.clock import plan_clock
 from irlx.pacing.slowdown.clock_bounds import clock_bounds
 from irlx.pacing.slowdown.curve import JointCurve
 from irlx.pacing.slowdown.planned import PlannedMotion, plan_motion
-from irlx.pacing.slowdown.smooth_clock import SmoothRate
+from irlx.pacing.slowdown.smooth_clock import SmoothRate, _lines, _with_more
 from machines import machine
 from slow_cases import SPEEDS, WAYS, slow_limits
 from stream_judge import excess
@@ -98,6 +99,34 @@ def test_without_an_answer_of_the_program_the_whole_law_is_slower(
     found = np.max(np.abs(np.diff(q, 2, axis=0)), axis=0)[1] / dt**2
     assert found <= acc
     assert found > 0.97 * acc or not ever_steeper
+
+
+def test_lines_that_are_left_out_bound_nothing() -> None:
+    """What is least at both ends of an interval's x is so in between, and each line is kept but once."""
+    rng, n, count = np.random.default_rng(5), 40, 6
+    side, slope = rng.uniform(0.5, 2.0, (n, count)), rng.uniform(0.1, 2.0, (n, count))
+    side[:, 1], slope[:, 1] = side[:, 0], slope[:, 0]
+    side[::3, 2] = np.inf
+    x = rng.uniform(0.1, 1.0, n + 1)
+    for sign in (1.0, -1.0):
+        lines, room = _lines(csr_matrix((n, n + 1)), side, sign, slope, x)
+        interval = lines.indices
+        assert len(interval) == len(room) < 0.6 * side.size
+        at_most = room - lines.data
+        for k in range(n):
+            kept = interval == k
+            assert np.min(room[kept]) == np.min(side[k])
+            full = side[k] + sign * slope[k] * x[k]
+            assert np.min(at_most[kept]) == pytest.approx(np.min(full), rel=1e-14)
+        assert len(set(zip(interval.tolist(), room.tolist(), strict=True))) == len(room)
+
+
+@pytest.mark.parametrize("way", [0.01, 100.0])
+def test_knots_that_differ_by_a_rounding_are_one(way: float) -> None:
+    knots = way * np.array([0.0, 0.5, 1.0])
+    found = _with_more(knots, way * np.array([0.25, 0.5 + 5e-14, 0.75, 0.75 + 2e-13, 1.0 - 5e-14]))
+    np.testing.assert_allclose(found / way, [0.0, 0.25, 0.5, 0.75, 0.75 + 2e-13, 1.0], rtol=0, atol=1e-13)
+    assert (len(found), found[-1]) == (6, way)
 
 
 def test_only_laws_that_bound_it_have_a_jerk_to_keep() -> None:
