@@ -146,6 +146,29 @@ def test_each_of_joined_moves_has_its_own(gantry_kit, robot) -> None:
         assert jerk_check(chain_of(gantry_kit, jerks, bump)[0], robot).status == status, (jerks, bump)
 
 
+def passing(kit, distance: float, bend: float, bump: tuple[float, float] | None = None) -> JointStream:
+    """Two lines of 50 mm with C_PASS, S curves of 60 m/s3, the second turned by `bend` rad."""
+    maker = kit.Maker(START.copy())
+    steps = [(0.05, 0.0, 0.0), (0.05 * np.cos(bend), 0.05 * np.sin(bend), 0.0)]
+    curves = lines(start_of(kit), steps, [(0, 0, 0), (0, 0, 0)])
+    way = way_of(curves, [distance])
+    s = way.length * kit.smooth(401)
+    if bump is not None:
+        s[np.argmin(np.abs(s - bump[0] * way.length))] += bump[1]
+    blocks = [lin(curves[0], Blend(), law=s_curve(60.0)), lin(curves[1], law=s_curve(60.0))]
+    run(maker, way, blocks, s)
+    return maker.stream()
+
+
+def test_c_pass_leaves_untold_how_long_its_blend_is(gantry_kit, robot) -> None:
+    """A blend on which no row lies is taken for another one, 1e-7 m longer or shorter, and more by ticks of
+    4 ms than any bound. Beside it the lines are judged."""
+    assert jerk_check(passing(gantry_kit, 1e-5, 0.05), robot).status == "ok"
+    assert jerk_check(passing(gantry_kit, 0.02, 1.0, (0.5, 2e-6)), robot).status == "ok"
+    for place in (0.1, 0.9):
+        assert jerk_check(passing(gantry_kit, 1e-5, 0.05, (place, 2e-6)), robot).status == "failed"
+
+
 def test_the_start_and_the_end_count_and_none_is_asked_of_a_trapezoid(gantry_kit, robot) -> None:
     for place, tick in ((0.0, 1), (1.0, None)):
         stream, s = chain_of(gantry_kit, [20.0] * 3, (place, -2e-6 if place else 2e-6))

@@ -237,9 +237,10 @@ class ChainRows:
         self._add_labels(rows, placed)
         alongs = np.concatenate([self._alongs, placed.along])
         near = self._near(placed, np.abs(np.diff(alongs[2:])))
+        untold = self._untold(placed, np.concatenate([self._leg, placed.leg]))
         self._add_speed(rows, placed, alongs[1:], near)
         self._add_acceleration(rows, placed, alongs[1:], near)
-        self._add_jerk(rows, alongs, near)
+        self._add_jerk(rows, alongs, near, untold)
         self._alongs, self._fresh = alongs[-3:], max(self._fresh - count, 0)
         self._cornered = max(self._cornered - count, 0)
 
@@ -353,9 +354,25 @@ class ChainRows:
         high = bound * (1.0 + PROGRAM_EXCESS) + 4.0 * PATH_STEP / self._dt**2
         self._tallies.acceleration.add(rows, rates, bound, ~(rates <= high), rates / high, "m/s2")
 
-    def _add_jerk(self, rows: Integers, alongs: Floats, near: tuple[Integers, Integers, Integers]) -> None:
+    def _untold(self, placed: Placed, legs: Integers) -> NDArray[np.bool_]:
+        """Which rows (R,) lie on blends, or the first ones behind, of which rows tell no better than
+        `PATH_POSITION` how long they are: those of C_PASS. `legs` (R + 1,) of the rows and of the one before.
+        """
+        may_be_less = np.array([False, *(leg.corner.may_be_less for leg in self._legs.legs)])
+        passed = np.cumsum(may_be_less)
+        on_one = ~placed.straight & (may_be_less[placed.leg] | may_be_less[placed.leg + 1])
+        return np.asarray(on_one | (passed[legs[1:]] > passed[legs[:-1]]))
+
+    def _add_jerk(
+        self,
+        rows: Integers,
+        alongs: Floats,
+        near: tuple[Integers, Integers, Integers],
+        untold: NDArray[np.bool_],
+    ) -> None:
         """Along the way, between four rows the most that is allowed at any of them."""
         allowed = np.max([self._legs.jerk[leg] for leg in near], axis=0)
+        allowed[untold] = np.inf
         bound = np.concatenate([self._jerks, allowed])
         self._jerks = bound[-3:]
         told = slice(self._cornered, None)
